@@ -1,0 +1,2 @@
+//! The `ambray` program.
+fn main() {}

@@ -1,0 +1,76 @@
+//! The narrow boundary between the method and whoever traces its rays: whole batches in, hits out.
+
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+
+/// A ray segment from `origin` along the unit vector `direction`, for parameters t in (0, `t_max`).
+///
+/// `t_min` is always 0: origins are moved off their surface by [`offset_point`](crate::offset::offset_point)
+/// (spec §5), since a positive `t_min` leaks light under sheets that touch the floor.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Ray {
+    /// Start of the ray, world space, scene units.
+    pub origin: Vec3,
+    /// End of the segment, in scene units along `direction`; may be infinite.
+    pub t_max: f32,
+    /// Unit direction, world space. Chords use it too: their length is in `t_max`.
+    pub direction: Vec3,
+    /// Randomness for stochastic transparency: the low 4 bits are a stratum, the rest a hash.
+    /// See [`alpha_threshold`].
+    pub seed: u32,
+}
+
+/// Closest intersection of a [`Ray`] with the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Hit {
+    /// Distance along the ray, scene units; infinite on a miss.
+    pub t: f32,
+    /// Barycentric weight of the triangle's second vertex.
+    pub u: f32,
+    /// Barycentric weight of the triangle's third vertex.
+    pub v: f32,
+    /// Index of the instance in the scene, [`Hit::NONE`] on a miss.
+    pub instance: u32,
+    /// Index of the triangle in the instance's mesh.
+    pub triangle: u32,
+}
+
+impl Hit {
+    /// Instance index of a miss.
+    pub const NONE: u32 = u32::MAX;
+    /// The ray left the scene or reached `t_max`.
+    pub const MISS: Self = Self { t: f32::INFINITY, u: 0.0, v: 0.0, instance: Self::NONE, triangle: 0 };
+
+    /// Whether anything was hit.
+    #[must_use]
+    pub const fn is_hit(&self) -> bool {
+        self.instance != Self::NONE
+    }
+}
+
+/// Whoever traces rays: a CPU tracer, a GPU, or a brute-force loop in a test.
+///
+/// Both calls must be pure functions of the ray and the scene: the answer for one ray never depends on its
+/// neighbours in the batch. Among hits at equal `t` the one with the smallest (instance, triangle) wins, so that
+/// every tracer returns the same hit. All triangles are two-sided; alpha masks are tested on every candidate.
+pub trait Trace: Sync {
+    /// Writes the closest hit of `rays[i]` to `hits[i]`. The slices have equal length.
+    fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit]);
+    /// Writes to `blocked[i]` whether `rays[i]` hits anything. The slices have equal length.
+    fn any_hits(&self, rays: &[Ray], blocked: &mut [bool]);
+}
+
+/// Threshold in `[0, 1)` against which a blended surface of `instance` compares its alpha for a ray with this `seed`:
+/// the candidate counts as a hit if `alpha > threshold`.
+///
+/// The stratum in the low 4 bits of the seed makes 16 neighbouring pixels cover `[0, 1)` evenly; the rotation by a hash
+/// of the rest and the instance makes layers independent of each other, so transmittance is right on average.
+#[must_use]
+pub fn alpha_threshold(seed: u32, instance: u32) -> f32 {
+    let stratum = ((seed & 15) as f32 + 0.5) / 16.0;
+    let rotation =
+        crate::sampling::unit_float(crate::sampling::pcg(crate::sampling::pcg(seed >> 4) ^ instance));
+    (stratum + rotation).fract()
+}

@@ -1,0 +1,1 @@
+//! From a hit to the attributes of the surface there.
