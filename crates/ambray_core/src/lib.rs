@@ -2,7 +2,10 @@
 #![forbid(unsafe_code)]
 
 pub mod camera;
+pub mod frame;
 pub mod light;
 pub mod offset;
+pub mod openness;
 pub mod sampling;
+pub mod settings;
 pub mod trace;

@@ -1,0 +1,21 @@
+//! From settings to a view: every `auto` replaced by a value of the scene.
+
+use ambray_core::{camera::Camera, light::Light};
+use glam::Vec3;
+
+/// What a frame is rendered with once every `auto` is decided.
+#[derive(Clone, Debug, PartialEq)]
+pub struct View {
+    /// The camera, sized to the picture.
+    pub camera: Camera,
+    /// Where the camera came from, in words.
+    pub camera_origin: String,
+    /// Near-field radius R, scene units.
+    pub radius: f32,
+    /// Ambient radiance L_a, linear RGB.
+    pub ambient: Vec3,
+    /// Colour where nothing is seen, linear RGB.
+    pub background: Vec3,
+    /// All lights that shine.
+    pub lights: Vec<Light>,
+}

@@ -1,0 +1,140 @@
+//! Settings that choose among named alternatives.
+
+use serde::{Deserialize, Serialize};
+
+/// Declares enums whose variants are spelled in kebab case in files and flags alike.
+macro_rules! choices {
+    ($($(#[doc = $doc:literal])* $name:ident { $($(#[$meta:meta])* $variant:ident,)* })*) => { $(
+        $(#[doc = $doc])*
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+        #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+        #[serde(rename_all = "kebab-case")]
+        pub enum $name { $($(#[$meta])* $variant,)* }
+
+        impl $name {
+            /// All alternatives, in the order of the documentation.
+            pub const ALL: &[Self] = &[$(Self::$variant),*];
+        }
+    )* };
+}
+
+choices! {
+    /// Kind of the fuzzy measure μ(d) (spec §2).
+    Falloff {
+        /// (d/R)^exponent, 1 from the radius on
+        #[default]
+        Power,
+        /// 1 − exp(−sigma d), without an end
+        Exponential,
+        /// the same, scaled to reach 1 at the radius
+        ExponentialTruncated,
+        /// 0 below the radius, 1 beyond: classical ambient occlusion
+        Step,
+    }
+    /// How near-field radiance I is estimated from the hits (spec §3).
+    NearRadiance {
+        /// mean radiance of the hits weighted by 1 − μ, times 1 − O
+        #[default]
+        Averaged,
+        /// plain mean radiance of the hits nearer than the near limit, times 1 − O
+        AveragedPlain,
+        /// sum over the hits of (1 − μ) times their radiance
+        PerHit,
+        /// no colour bleeding
+        Off,
+    }
+    /// Radiance L_r leaving a hit (spec §3).
+    RadianceSource {
+        /// albedo of the hit, whatever the ambient radiance
+        Albedo,
+        /// albedo times ambient radiance
+        #[default]
+        Ambient,
+        /// as ambient, with infinite bounces between surfaces as open as the shaded point
+        SelfSimilar,
+        /// albedo times ambient radiance and direct light, with shadows
+        Lit,
+        /// the same without shadows
+        LitUnshadowed,
+    }
+    /// Detection of thin objects that the rays slip past (spec §8).
+    Thin {
+        /// none: the measured result
+        #[default]
+        Off,
+        /// the paper's second batch: all pairs of missed rays
+        Paper,
+        /// opposite pairs with fuzzy visibility: fills the bright line under curtains
+        Sheet,
+    }
+    /// Where the minimum of the first and the second batch is taken (spec §8.3).
+    ThinMinimum {
+        /// per pixel, before the filter
+        #[default]
+        BeforeFilter,
+        /// after filtering both batches: less downward bias
+        AfterFilter,
+    }
+    /// Which sample set a pixel uses (spec §6).
+    Sampling {
+        /// 16 classes over 4 × 4 pixels, each good alone and all good together
+        #[default]
+        Interleaved,
+        /// one set for all pixels: bands
+        Same,
+        /// one good set per pixel, scrambled by a hash of the pixel: dot noise
+        Random,
+        /// independent random directions, as in plain Monte Carlo
+        Independent,
+    }
+    /// Generator of the sample sets (spec §6).
+    Sequence {
+        /// owen where spp is a power of two, r2 elsewhere
+        #[default]
+        Auto,
+        /// Owen-scrambled (0,2)-sequence
+        Owen,
+        /// R2 sequence
+        R2,
+    }
+    /// Window of the low-pass filter over one 4 × 4 pattern (spec §7).
+    Window {
+        /// no filter
+        Off,
+        /// 4 × 4 taps, shifted by half a pixel
+        Box,
+        /// 5 × 5 taps, the outer ones by half
+        #[default]
+        Centred,
+    }
+    /// Which neighbours the filter accepts by depth (spec §7).
+    FilterTest {
+        /// distance from the tangent plane in pixel footprints
+        #[default]
+        Plane,
+        /// difference of depth in scene units
+        Absolute,
+        /// difference of depth as a share of the depth
+        Relative,
+        /// all of them
+        None,
+    }
+    /// Which normal directs the ambient rays and the sun.
+    Normals {
+        /// interpolated vertex normals with normal maps
+        #[default]
+        Shading,
+        /// interpolated vertex normals
+        Smooth,
+        /// the plane of each triangle
+        Geometric,
+    }
+    /// Mapping of linear radiance to the display in PNG pictures; OpenEXR stays linear.
+    ToneMap {
+        /// clip at 1
+        None,
+        /// Khronos PBR Neutral: colours below 0.8 keep their look, highlights roll off
+        #[default]
+        Neutral,
+    }
+}

@@ -1,0 +1,19 @@
+//! What a person sets: plain data with meaning, unit, range and default beside each field.
+//!
+//! [`Settings`] is complete; a [`SettingsPatch`] holds some of the fields and comes from a preset, a file or the
+//! command line. Both are declared once, by the `settings!` table in [`table`], which also makes the flags.
+
+mod choices;
+mod preset;
+mod table;
+mod validate;
+mod values;
+
+pub use choices::{
+    Falloff, FilterTest, NearRadiance, Normals, RadianceSource, Sampling, Sequence, Thin, ThinMinimum,
+    ToneMap, Window,
+};
+pub use preset::Preset;
+pub use table::{Settings, SettingsPatch};
+pub use validate::SettingsError;
+pub use values::{Auto, Rgb, Size, Triple, ValueError};
