@@ -2,7 +2,11 @@
 #![forbid(unsafe_code)]
 
 pub mod camera;
+pub mod compose;
+pub mod direct;
+pub mod filter;
 pub mod frame;
+pub mod gather;
 pub mod light;
 pub mod offset;
 pub mod openness;

@@ -184,6 +184,17 @@ impl SampleSets {
         Self { sampling, sequence, spp, seeds, table }
     }
 
+    /// The same given points of the unit square for every pixel.
+    #[must_use]
+    pub fn from_points(points: &[Vec2]) -> Self {
+        let table: Vec<_> = points
+            .iter()
+            .map(|&xi| SampleDirection { local: cosine_hemisphere(xi), azimuth: xi.y })
+            .collect();
+        let spp = table.len() as u32;
+        Self { sampling: Sampling::Same, sequence: Sequence::Auto, spp, seeds: DEFAULT_SEEDS, table }
+    }
+
     /// Number N of directions in a set.
     #[must_use]
     pub const fn spp(&self) -> u32 {

@@ -74,3 +74,20 @@ pub fn alpha_threshold(seed: u32, instance: u32) -> f32 {
         crate::sampling::unit_float(crate::sampling::pcg(crate::sampling::pcg(seed >> 4) ^ instance));
     (stratum + rotation).fract()
 }
+
+/// Diffuse surface at the end of a ray: what the radiance of a hit depends on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Diffuse {
+    /// Position from barycentric coordinates, world space.
+    pub position: Vec3,
+    /// Unit geometric normal on the side that the ray came from.
+    pub geometric_normal: Vec3,
+    /// Albedo a, linear RGB in `[0, 1]`.
+    pub albedo: Vec3,
+}
+
+/// The scene as the method sees it: rays go in, hits and the surfaces there come out.
+pub trait World: Trace {
+    /// Surface at the `hit` of `ray`, averaged over a footprint of `width` scene units where textures allow.
+    fn diffuse_at(&self, ray: &Ray, hit: &Hit, width: f32) -> Diffuse;
+}

@@ -1,0 +1,82 @@
+//! Direct light: Σ E cos V over the lights, with one shadow ray per point and light (spec §4).
+
+use glam::Vec3;
+
+use crate::{
+    light::Light,
+    offset::offset_point,
+    trace::{Ray, Trace},
+};
+
+/// A point that receives direct light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Receiver {
+    /// Position, world space.
+    pub position: Vec3,
+    /// Unit geometric normal on the side to be lit.
+    pub geometric_normal: Vec3,
+    /// Unit normal n of the cosine.
+    pub normal: Vec3,
+    /// Seed of the shadow rays.
+    pub seed: u32,
+}
+
+/// Direct light at a [`Receiver`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Received {
+    /// Σ E max(0, n·l) V over the lights, linear RGB.
+    pub irradiance: Vec3,
+    /// Shadow rays traced for it.
+    pub shadow_rays: u32,
+}
+
+/// Buffers that are reused from batch to batch.
+#[derive(Debug, Default)]
+pub struct DirectScratch {
+    rays: Vec<Ray>,
+    arriving: Vec<(u32, Vec3)>,
+    blocked: Vec<bool>,
+}
+
+/// Writes the direct light at `receivers[i]` to `received[i]`.
+///
+/// With `shadows` off, V is 1. Lights below the geometric horizon never reach the point.
+pub fn direct_irradiance(
+    trace: &impl Trace,
+    lights: &[Light],
+    receivers: &[Receiver],
+    shadows: bool,
+    scratch: &mut DirectScratch,
+    received: &mut [Received],
+) {
+    received.fill(Received::default());
+    // Light by light, so that a batch holds parallel or converging rays.
+    for light in lights {
+        scratch.rays.clear();
+        scratch.arriving.clear();
+        for (i, receiver) in receivers.iter().enumerate() {
+            let incident = light.incident(receiver.position);
+            let cos = receiver.normal.dot(incident.to_light);
+            let arriving = incident.irradiance * cos;
+            let above_horizon = receiver.geometric_normal.dot(incident.to_light) > 0.0;
+            if cos > 0.0 && above_horizon && arriving != Vec3::ZERO {
+                let origin = offset_point(receiver.position, receiver.geometric_normal);
+                let (direction, t_max) = (incident.to_light, incident.distance);
+                scratch.rays.push(Ray { origin, t_max, direction, seed: receiver.seed });
+                scratch.arriving.push((i as u32, arriving));
+            }
+        }
+        scratch.blocked.clear();
+        scratch.blocked.resize(scratch.rays.len(), false);
+        if shadows {
+            trace.any_hits(&scratch.rays, &mut scratch.blocked);
+        }
+        for (&(i, arriving), &blocked) in scratch.arriving.iter().zip(&scratch.blocked) {
+            let received = &mut received[i as usize];
+            received.shadow_rays += u32::from(shadows);
+            if !blocked {
+                received.irradiance += arriving;
+            }
+        }
+    }
+}

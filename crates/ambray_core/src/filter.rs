@@ -1,0 +1,127 @@
+//! Geometry-aware low-pass over one period of the interleaved pattern (spec §7).
+//!
+//! O'(p) = Σ k A(p,q) O(q) / Σ k A(p,q). On a locally constant signal the pattern vanishes exactly, because every
+//! window holds each of the 16 classes with the same total weight.
+
+use glam::{Vec3, Vec4};
+
+use crate::settings::{FilterTest, Settings, Window};
+
+/// What the filter knows about a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Guide {
+    /// Position x, world space.
+    pub position: Vec3,
+    /// View depth z, scene units; infinite where nothing is seen.
+    pub depth: f32,
+    /// Unit normal n, without normal map.
+    pub normal: Vec3,
+    /// Size of the pixel at this depth, scene units.
+    pub footprint: f32,
+}
+
+impl Guide {
+    /// A pixel that sees no surface: never accepted, never changed.
+    pub const NOTHING: Self =
+        Self { position: Vec3::ZERO, depth: f32::INFINITY, normal: Vec3::ZERO, footprint: 0.0 };
+
+    /// Whether the pixel sees a surface.
+    #[must_use]
+    pub fn is_surface(&self) -> bool {
+        self.depth.is_finite()
+    }
+}
+
+/// Window and acceptance test.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Filter {
+    window: Window,
+    test: FilterTest,
+    tolerance: f32,
+    cos_normal: f32,
+}
+
+/// Offsets along one axis with their weights: four taps from -1, or five whose outer ones count half.
+const BOX: &[(i32, f32)] = &[(-1, 1.0), (0, 1.0), (1, 1.0), (2, 1.0)];
+const CENTRED: &[(i32, f32)] = &[(-2, 0.5), (-1, 1.0), (0, 1.0), (1, 1.0), (2, 0.5)];
+
+impl From<&Settings> for Filter {
+    fn from(settings: &Settings) -> Self {
+        let tolerance = match settings.filter_test {
+            FilterTest::Plane => settings.filter_plane,
+            FilterTest::Absolute => settings.filter_absolute,
+            FilterTest::Relative => settings.filter_relative,
+            FilterTest::None => f32::INFINITY,
+        };
+        let cos_normal = settings.filter_cos_normal;
+        Self { window: settings.filter, test: settings.filter_test, tolerance, cos_normal }
+    }
+}
+
+impl Filter {
+    /// Whether the filter does anything.
+    #[must_use]
+    pub fn is_on(&self) -> bool {
+        self.window != Window::Off
+    }
+
+    /// Acceptance A(p, q) of pixel `q` by pixel `p`, both surfaces: close to its tangent plane or depth, and facing alike.
+    #[must_use]
+    pub fn accepts(&self, p: &Guide, q: &Guide) -> bool {
+        let near = match self.test {
+            FilterTest::Plane => p.normal.dot(q.position - p.position).abs() < self.tolerance * p.footprint,
+            FilterTest::Absolute => (q.depth - p.depth).abs() < self.tolerance,
+            FilterTest::Relative => (q.depth - p.depth).abs() < self.tolerance * p.depth,
+            FilterTest::None => true,
+        };
+        near && (self.cos_normal <= -1.0 || p.normal.dot(q.normal) > self.cos_normal)
+    }
+
+    /// Filters row `y` of a picture of `width` pixels a row: writes the row of each plane of `inputs` to `outputs`.
+    ///
+    /// Taps outside the picture and taps that see no surface are skipped; pixels that see no surface are copied.
+    pub fn filter_row<const PLANES: usize>(
+        &self,
+        guides: &[Guide],
+        width: usize,
+        y: usize,
+        inputs: [&[Vec4]; PLANES],
+        outputs: [&mut [Vec4]; PLANES],
+    ) {
+        let taps = match self.window {
+            Window::Off => &[(0, 1.0)][..],
+            Window::Box => BOX,
+            Window::Centred => CENTRED,
+        };
+        let height = guides.len() / width;
+        let inside = |at: usize, offset: i32, end: usize| {
+            at.checked_add_signed(offset as isize).filter(|&shifted| shifted < end)
+        };
+        for x in 0..width {
+            let p = y * width + x;
+            let guide = &guides[p];
+            let mut sums = [Vec4::ZERO; PLANES];
+            let mut weight = 0.0;
+            if guide.is_surface() {
+                for &(dy, ky) in taps {
+                    let Some(row) = inside(y, dy, height) else { continue };
+                    for &(dx, kx) in taps {
+                        let Some(column) = inside(x, dx, width) else { continue };
+                        let q = row * width + column;
+                        // The centre is always accepted.
+                        if q == p || (guides[q].is_surface() && self.accepts(guide, &guides[q])) {
+                            let k = kx * ky;
+                            weight += k;
+                            for (sum, input) in sums.iter_mut().zip(inputs) {
+                                *sum += k * input[q];
+                            }
+                        }
+                    }
+                }
+            }
+            for plane in 0..PLANES {
+                outputs[plane][x] = if weight > 0.0 { sums[plane] / weight } else { inputs[plane][p] };
+            }
+        }
+    }
+}

@@ -1,0 +1,214 @@
+//! The estimator: points and sample directions go in, openness O and near-field radiance I come out (spec §§3, 5, 8).
+//!
+//! Work is done in batches of points. The rays of a batch are ordered by sample class, then by direction, then by
+//! point: on a flat surface such a run of rays is parallel, which tracers of packets profit from.
+
+mod first;
+mod radiance;
+mod thin;
+
+use std::f32::consts::PI;
+
+use glam::Vec3;
+
+use crate::{
+    light::Light,
+    openness::Openness,
+    sampling::{PixelKey, SampleSets},
+    settings::{NearRadiance, RadianceSource, Thin},
+    trace::World,
+};
+
+use first::FirstBatch;
+use radiance::RadianceScratch;
+use thin::{Chords, SecondBatch};
+
+/// Rays of one batch: large enough to amortise calls, small enough for the cache.
+const BATCH_RAYS: usize = 8192;
+
+/// A surface point at which ambient light is gathered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShadedPoint {
+    /// Position s from barycentric coordinates, world space.
+    pub position: Vec3,
+    /// Unit geometric normal on the lit side.
+    pub geometric_normal: Vec3,
+    /// Unit normal n about which directions are sampled.
+    pub normal: Vec3,
+    /// Which samples the point uses.
+    pub key: PixelKey,
+}
+
+/// What decides the estimate, with every `auto` replaced.
+#[derive(Clone, Copy, Debug)]
+pub struct GatherParams<'a> {
+    /// Fuzzy measure μ.
+    pub openness: Openness,
+    /// Near-field radius R: rays without a hit below it are the missed rays of the second batch.
+    pub radius: f32,
+    /// How I is estimated.
+    pub near_radiance: NearRadiance,
+    /// Distance R_c below which hits enter the average.
+    pub near_limit: f32,
+    /// Radiance of a hit.
+    pub source: RadianceSource,
+    /// Second batch.
+    pub thin: Thin,
+    /// Edge factor of the sheet mode.
+    pub thin_edge: bool,
+    /// Ambient radiance L_a.
+    pub ambient: Vec3,
+    /// Lights for [`RadianceSource::Lit`].
+    pub lights: &'a [Light],
+    /// Directions.
+    pub samples: &'a SampleSets,
+}
+
+/// Ambient light gathered at a point.
+///
+/// For [`RadianceSource::SelfSimilar`] the near radiances are still without the factor L_a F:
+/// [`near_radiance`](crate::compose::near_radiance) applies it after the filter.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Gathered {
+    /// Openness O = min(O1, A2).
+    pub openness: f32,
+    /// Near-field radiance I that belongs to O.
+    pub near: Vec3,
+    /// Openness O1 of the first batch.
+    pub first: f32,
+    /// Near-field radiance that belongs to O1.
+    pub near_first: Vec3,
+    /// Openness A2 of the second batch, 1 without one.
+    pub second: f32,
+    /// Near-field radiance that belongs to A2.
+    pub near_second: Vec3,
+    /// Bent normal b = (1/N) Σ μ_i w_i, not normalised.
+    pub bent: Vec3,
+    /// Rays of the first batch that were traced.
+    pub ambient_rays: u32,
+    /// Rays of the first batch that hit something.
+    pub ambient_hits: u32,
+    /// Chords of the second batch.
+    pub chord_rays: u32,
+    /// Chords that were blocked.
+    pub chord_hits: u32,
+    /// Shadow rays for the radiance of hits.
+    pub shadow_rays: u32,
+}
+
+/// One ray of the first batch, after tracing.
+#[derive(Clone, Copy, Debug)]
+struct Sample {
+    /// World direction w_i.
+    direction: Vec3,
+    /// Distance d_i of the hit; infinite on a miss, 0 below the geometric horizon.
+    distance: f32,
+    /// Radiance L_r of the hit, 0 on a miss.
+    radiance: Vec3,
+    /// Azimuth v of the direction.
+    azimuth: f32,
+}
+
+/// Buffers that are reused from batch to batch.
+#[derive(Debug, Default)]
+pub struct GatherScratch {
+    first: FirstBatch,
+    chords: Chords,
+    second: Vec<SecondBatch>,
+    radiance: RadianceScratch,
+}
+
+/// Gathers ambient light at `points` and writes it to `out`, which has the same length.
+///
+/// Points should be ordered by sample class. The result of a point does not depend on its neighbours in the list.
+pub fn gather(
+    world: &impl World,
+    params: &GatherParams<'_>,
+    points: &[ShadedPoint],
+    scratch: &mut GatherScratch,
+    out: &mut [Gathered],
+) {
+    let spp = params.samples.spp() as usize;
+    let rays_per_point = match params.thin {
+        Thin::Paper => spp.max(spp * (spp - 1) / 2),
+        Thin::Sheet | Thin::Off => spp,
+    };
+    let batch = (BATCH_RAYS / rays_per_point).max(1);
+    for (points, out) in points.chunks(batch).zip(out.chunks_mut(batch)) {
+        gather_batch(world, params, points, scratch, out);
+    }
+}
+
+fn gather_batch(
+    world: &impl World,
+    params: &GatherParams<'_>,
+    points: &[ShadedPoint],
+    scratch: &mut GatherScratch,
+    out: &mut [Gathered],
+) {
+    out.fill(Gathered::default());
+    scratch.first.trace(world, params, points, &mut scratch.radiance, out);
+    let spp = params.samples.spp() as usize;
+    let samples = scratch.first.samples();
+    if params.thin == Thin::Off {
+        scratch.second.clear();
+        scratch.second.resize(points.len(), SecondBatch::OPEN);
+    } else {
+        scratch.chords.trace(world, params, points, samples, &mut scratch.radiance, &mut scratch.second, out);
+    }
+    for (i, gathered) in out.iter_mut().enumerate() {
+        combine(params, &samples[i * spp..][..spp], &scratch.second[i], gathered);
+    }
+}
+
+/// Openness, near radiance and bent normal of one point from its traced rays (spec §§3, 8).
+fn combine(params: &GatherParams<'_>, samples: &[Sample], second: &SecondBatch, gathered: &mut Gathered) {
+    let mut open = 0.0;
+    let mut bent = Vec3::ZERO;
+    // Σ (1 - μ) L_r, and the sums of the average: weights and weighted radiances.
+    let (mut per_hit, mut weight, mut weighted) = (Vec3::ZERO, 0.0, Vec3::ZERO);
+    for sample in samples {
+        let mu = params.openness.at(sample.distance);
+        open += mu;
+        bent += mu * sample.direction;
+        per_hit += (1.0 - mu) * sample.radiance;
+        if sample.distance < params.near_limit {
+            let w = if params.near_radiance == NearRadiance::AveragedPlain { 1.0 } else { 1.0 - mu };
+            weight += w;
+            weighted += w * sample.radiance;
+        }
+    }
+    let per_sample = 1.0 / samples.len() as f32;
+    let (first, per_hit) = (open * per_sample, per_hit * per_sample);
+    let mean = |weighted: Vec3, weight: f32| if weight > 0.0 { weighted / weight } else { Vec3::ZERO };
+    // Near radiance that is consistent with an openness o (spec §8.1).
+    let near = |o: f32| match params.near_radiance {
+        NearRadiance::Off => Vec3::ZERO,
+        NearRadiance::PerHit if first < 1.0 => per_hit * ((1.0 - o) / (1.0 - first)),
+        NearRadiance::PerHit => mean(second.weighted_radiance, second.weight) * (1.0 - o),
+        NearRadiance::Averaged | NearRadiance::AveragedPlain => {
+            mean(weighted + second.weighted_radiance, weight + second.weight) * (1.0 - o)
+        }
+    };
+    let openness = first.min(second.openness);
+    gathered.openness = openness;
+    gathered.near = near(openness);
+    gathered.first = first;
+    gathered.near_first = near(first);
+    gathered.second = second.openness;
+    gathered.near_second = near(second.openness);
+    gathered.bent = bent * per_sample;
+}
+
+impl GatherParams<'_> {
+    /// Whether hits need their radiance.
+    fn needs_radiance(&self) -> bool {
+        self.near_radiance != NearRadiance::Off
+    }
+
+    /// Width of the footprint of a hit at distance 1: a ray stands for the share 1/N of the cosine-weighted
+    /// hemisphere, whose area is π.
+    fn cone_width(&self) -> f32 {
+        (PI / self.samples.spp() as f32).sqrt()
+    }
+}

@@ -1,0 +1,245 @@
+//! Second batch: chords that join the ends of the missed rays and find thin objects between them (spec §8).
+
+use glam::Vec3;
+
+use crate::{
+    settings::Thin,
+    trace::{Hit, Ray, World},
+};
+
+use super::{GatherParams, Gathered, Sample, ShadedPoint, radiance::RadianceScratch};
+
+/// Chords end a little before the second end point (spec §5).
+const CHORD_END: f32 = 1.0 - 1e-4;
+
+/// What the second batch says about a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct SecondBatch {
+    /// Openness A2.
+    pub(super) openness: f32,
+    /// Σ w over the blocked chords: length over R (paper), or degree of blocking (sheet).
+    pub(super) weight: f32,
+    /// Σ w L_r over the blocked chords.
+    pub(super) weighted_radiance: Vec3,
+}
+
+impl SecondBatch {
+    /// Nothing thin was found.
+    pub(super) const OPEN: Self = Self { openness: 1.0, weight: 0.0, weighted_radiance: Vec3::ZERO };
+}
+
+/// A chord between two missed rays of a point.
+#[derive(Clone, Copy, Debug)]
+struct Chord {
+    point: u32,
+    /// Length, scene units.
+    length: f32,
+    /// Degree in [0, 1] to which the chord is blocked.
+    blocked: f32,
+    /// Weight of its hit in the mean radiance.
+    weight: f32,
+}
+
+/// The chords of a batch of points.
+#[derive(Debug, Default)]
+pub(super) struct Chords {
+    chords: Vec<Chord>,
+    rays: Vec<Ray>,
+    hits: Vec<Hit>,
+    blocked: Vec<bool>,
+    /// Missed rays of each point of a run, each list ended by the next one's start.
+    missed: Vec<u32>,
+    starts: Vec<usize>,
+}
+
+impl Chords {
+    /// Traces the chords of `points`, whose first batch is in `samples`, and writes A2 and the radiance of the blocked
+    /// chords to `second`.
+    pub(super) fn trace(
+        &mut self,
+        world: &impl World,
+        params: &GatherParams<'_>,
+        points: &[ShadedPoint],
+        samples: &[Sample],
+        radiance: &mut RadianceScratch,
+        second: &mut Vec<SecondBatch>,
+        out: &mut [Gathered],
+    ) {
+        self.make_rays(params, points, samples);
+        radiance.clear();
+        if params.thin == Thin::Paper && !params.needs_radiance() {
+            // Visibility alone: any hit will do.
+            self.blocked.clear();
+            self.blocked.resize(self.rays.len(), false);
+            world.any_hits(&self.rays, &mut self.blocked);
+            for (chord, &blocked) in self.chords.iter_mut().zip(&self.blocked) {
+                chord.blocked = f32::from(u8::from(blocked));
+            }
+        } else {
+            self.hits.clear();
+            self.hits.resize(self.rays.len(), Hit::MISS);
+            world.closest_hits(&self.rays, &mut self.hits);
+            self.weigh_hits(world, params, points, radiance);
+        }
+        self.sum_up(params, second, points.len(), out);
+        radiance.evaluate(world, params);
+        for (chord, radiance, shadow_rays) in radiance.results(params) {
+            let chord = &self.chords[chord as usize];
+            second[chord.point as usize].weight += chord.weight;
+            second[chord.point as usize].weighted_radiance += chord.weight * radiance;
+            out[chord.point as usize].shadow_rays += shadow_rays;
+        }
+    }
+
+    /// Degree of blocking and weight of each chord that hit something.
+    fn weigh_hits(
+        &mut self,
+        world: &impl World,
+        params: &GatherParams<'_>,
+        points: &[ShadedPoint],
+        radiance: &mut RadianceScratch,
+    ) {
+        let hits = self.chords.iter_mut().zip(&self.rays).zip(&self.hits).enumerate();
+        for (i, ((chord, ray), hit)) in hits.filter(|(_, (_, hit))| hit.is_hit()) {
+            let from_point = ray.origin + hit.t * ray.direction - points[chord.point as usize].position;
+            let distance = from_point.length();
+            (chord.blocked, chord.weight) = match params.thin {
+                Thin::Paper => (1.0, chord.length / params.radius),
+                Thin::Sheet | Thin::Off => (1.0 - params.openness.at(distance), 1.0),
+            };
+            if params.needs_radiance() || params.thin_edge {
+                let normal = radiance.push(world, ray, hit, distance * params.cone_width(), i as u32);
+                if params.thin == Thin::Sheet {
+                    if params.thin_edge {
+                        chord.blocked *= seen_edge_on(normal.dot(from_point).abs() / distance);
+                    }
+                    chord.weight = chord.blocked;
+                }
+            }
+        }
+    }
+
+    /// A2 of each point (spec §8.1 and §8.3), and its counts of chords.
+    fn sum_up(
+        &self,
+        params: &GatherParams<'_>,
+        second: &mut Vec<SecondBatch>,
+        points: usize,
+        out: &mut [Gathered],
+    ) {
+        second.clear();
+        second.resize(points, SecondBatch::OPEN);
+        let spp = params.samples.spp() as f32;
+        let mut sums = vec![(0.0_f32, 0.0_f32); points];
+        for chord in &self.chords {
+            let gathered = &mut out[chord.point as usize];
+            gathered.chord_rays += 1;
+            gathered.chord_hits += u32::from(chord.blocked > 0.0);
+            let (blocked, total) = &mut sums[chord.point as usize];
+            match params.thin {
+                Thin::Paper => {
+                    *blocked += chord.length * chord.blocked;
+                    *total += chord.length;
+                }
+                Thin::Sheet | Thin::Off => {
+                    *blocked += chord.blocked;
+                    *total = spp;
+                }
+            }
+        }
+        for (second, (blocked, total)) in second.iter_mut().zip(sums) {
+            if total > 0.0 {
+                second.openness = 1.0 - blocked / total;
+            }
+        }
+    }
+
+    /// One chord for each chosen pair of missed rays, run by run of equal class and pair by pair, so that
+    /// neighbouring rays are nearly parallel.
+    fn make_rays(&mut self, params: &GatherParams<'_>, points: &[ShadedPoint], samples: &[Sample]) {
+        self.chords.clear();
+        self.rays.clear();
+        let spp = params.samples.spp() as usize;
+        let mut first = 0;
+        for run in points.chunk_by(|a, b| a.key.class == b.key.class) {
+            self.find_missed(params, &samples[first * spp..][..run.len() * spp]);
+            let most = self.starts.windows(2).map(|w| w[1] - w[0]).max().unwrap_or(0);
+            let mut emit = |q: usize, partner: &dyn Fn(usize) -> Option<usize>| {
+                for (i, point) in run.iter().enumerate() {
+                    let missed = &self.missed[self.starts[i]..self.starts[i + 1]];
+                    let Some(partner) = partner(missed.len()) else { continue };
+                    let ends = [missed[q], missed[partner]].map(|j| {
+                        let direction = samples[(first + i) * spp + j as usize].direction;
+                        point.position + direction * end_length(params)
+                    });
+                    let length = ends[0].distance(ends[1]);
+                    if length > 0.0 {
+                        let direction = (ends[1] - ends[0]) / length;
+                        let seed = point.key.ray_seed((spp + q * spp + partner) as u32);
+                        self.rays.push(Ray { origin: ends[0], t_max: CHORD_END * length, direction, seed });
+                        let point = (first + i) as u32;
+                        self.chords.push(Chord { point, length, blocked: 0.0, weight: 0.0 });
+                    }
+                }
+            };
+            match params.thin {
+                Thin::Paper => {
+                    for q in 0..most {
+                        for partner in q + 1..most {
+                            emit(q, &|m| (partner < m).then_some(partner));
+                        }
+                    }
+                }
+                Thin::Sheet | Thin::Off => {
+                    for q in 0..most / 2 {
+                        emit(q, &|m| (q < m / 2).then_some(q + m / 2));
+                    }
+                }
+            }
+            first += run.len();
+        }
+    }
+
+    /// Lists the missed rays of each point: in the order of the samples (paper) or of their azimuth (sheet).
+    fn find_missed(&mut self, params: &GatherParams<'_>, samples: &[Sample]) {
+        self.missed.clear();
+        self.starts.clear();
+        self.starts.push(0);
+        for samples in samples.chunks(params.samples.spp() as usize) {
+            let start = self.missed.len();
+            self.missed
+                .extend((0..samples.len() as u32).filter(|&j| samples[j as usize].distance >= params.radius));
+            if params.thin == Thin::Sheet {
+                self.missed[start..]
+                    .sort_by(|&a, &b| samples[a as usize].azimuth.total_cmp(&samples[b as usize].azimuth));
+            }
+            self.starts.push(self.missed.len());
+        }
+    }
+}
+
+/// Distance of the end points of missed rays: R (paper), R/2 (sheet: low sheets are found too).
+fn end_length(params: &GatherParams<'_>) -> f32 {
+    if params.thin == Thin::Paper { params.radius } else { 0.5 * params.radius }
+}
+
+/// Edge factor S(e) = 1 - smoothstep(0.15, 0.5, e) of the cosine `e` between the hit's normal and the line of sight
+/// from the shaded point: 1 for surfaces seen edge-on (spec §8.3).
+fn seen_edge_on(e: f32) -> f32 {
+    let x = ((e - 0.15) / 0.35).clamp(0.0, 1.0);
+    1.0 - x * x * (3.0 - 2.0 * x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edge_factor() {
+        assert_eq!(seen_edge_on(0.0), 1.0);
+        assert_eq!(seen_edge_on(0.15), 1.0);
+        assert!((seen_edge_on(0.325) - 0.5).abs() < 1e-6);
+        assert_eq!(seen_edge_on(0.5), 0.0);
+        assert_eq!(seen_edge_on(1.0), 0.0);
+    }
+}
