@@ -1,0 +1,126 @@
+//! The CPU backend: the passes of a frame, and points evaluated one by one.
+//!
+//! Pass 1 runs over tiles of 16 × 16 pixels: primary rays, direct light, and the gather of openness and near radiance
+//! with the pixels of a tile ordered by sample class, so that the rays of a batch are nearly parallel. Pass 2 filters
+//! and composes row by row. Every pixel is a pure function of the scene, the settings and its place, so the picture
+//! does not depend on the number of threads.
+
+mod pass1;
+mod pass2;
+mod points;
+mod stages;
+mod world;
+
+use std::{sync::Arc, time::Instant};
+
+use ambray_core::{
+    control::{Cancelled, Control},
+    frame::{Frame, FrameStats},
+    gather::GatherParams,
+    query::{QueryPoint, QueryResult},
+    sampling::SampleSets,
+    settings::Settings,
+    view::View,
+};
+use ambray_scene::Scene;
+use rayon::ThreadPoolBuildError;
+
+pub use world::CpuWorld;
+
+use crate::BuildOptions;
+
+/// Why the backend returned nothing.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum BackendError {
+    /// The caller cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// The threads could not be started.
+    #[error("the threads could not be started")]
+    Threads(#[from] ThreadPoolBuildError),
+}
+
+/// A scene made ready for rendering on the CPU.
+#[derive(Debug)]
+pub struct CpuBackend {
+    world: CpuWorld,
+}
+
+impl CpuBackend {
+    /// Builds the trees of `scene`.
+    #[must_use]
+    pub fn new(scene: Arc<Scene>, options: BuildOptions) -> Self {
+        Self { world: CpuWorld::new(scene, options) }
+    }
+
+    /// The scene as the method sees it.
+    #[must_use]
+    pub const fn world(&self) -> &CpuWorld {
+        &self.world
+    }
+
+    /// Renders a frame.
+    pub fn render(&self, settings: &Settings, view: &View, control: Control<'_>) -> Result<Frame, BackendError> {
+        let start = Instant::now();
+        let pool = thread_pool(control)?;
+        let samples = sample_sets(settings);
+        let params = gather_params(settings, view, &samples);
+        pool.install(|| {
+            let mut pass1 = pass1::run(&self.world, settings, view, &params, control)?;
+            let pass2 = pass2::run(&mut pass1, settings, view, control)?;
+            let (width, height) = view.camera.size();
+            let mut times = pass1.clock.shares(pass1.elapsed);
+            times.filter = pass2.elapsed;
+            times.total = start.elapsed();
+            Ok(Frame {
+                width,
+                height,
+                beauty: pass2.beauty,
+                gbuffer: pass1.gbuffer,
+                ambient_raw: pass1.ambient,
+                ambient: pass2.ambient,
+                bent: pass2.bent,
+                view: view.clone(),
+                stats: FrameStats { rays: pass1.rays, times, threads: pool.current_num_threads() },
+            })
+        })
+    }
+
+    /// Evaluates ambient light at `points`; result `i` belongs to point `i`.
+    pub fn query(
+        &self,
+        settings: &Settings,
+        view: &View,
+        points: &[QueryPoint],
+        control: Control<'_>,
+    ) -> Result<Vec<QueryResult>, BackendError> {
+        let samples = sample_sets(settings);
+        let params = gather_params(settings, view, &samples);
+        let pool = thread_pool(control)?;
+        Ok(pool.install(|| points::run(&self.world, settings, view, &params, points, control))?)
+    }
+}
+
+fn thread_pool(control: Control<'_>) -> Result<rayon::ThreadPool, ThreadPoolBuildError> {
+    rayon::ThreadPoolBuilder::new().num_threads(control.threads).build()
+}
+
+fn sample_sets(settings: &Settings) -> SampleSets {
+    SampleSets::new(settings.sampling, settings.sequence, settings.spp, settings.frame, settings.seed)
+}
+
+fn gather_params<'a>(settings: &Settings, view: &'a View, samples: &'a SampleSets) -> GatherParams<'a> {
+    GatherParams {
+        openness: view.openness,
+        radius: view.radius,
+        near_radiance: settings.near_radiance,
+        near_limit: view.near_limit,
+        source: settings.radiance_source,
+        thin: settings.thin,
+        thin_edge: settings.thin_edge,
+        ambient: view.ambient,
+        lights: &view.lights,
+        samples,
+    }
+}

@@ -1,0 +1,268 @@
+//! Pass 1: primary visibility, direct light, openness and near radiance (spec §4), tile by tile.
+
+use std::{
+    f32::consts::FRAC_1_PI,
+    sync::atomic::{AtomicUsize, Ordering},
+    time::{Duration, Instant},
+};
+
+use ambray_core::{
+    control::{Cancelled, Control},
+    direct::{DirectScratch, Received, Receiver, direct_irradiance},
+    filter::Guide,
+    frame::{GBufferPixel, RayCounts},
+    gather::{GatherParams, GatherScratch, Gathered, ShadedPoint, gather},
+    sampling::PixelKey,
+    settings::{Normals, Settings, ThinMinimum},
+    trace::{Hit, Ray, Trace},
+    view::View,
+};
+use glam::{Vec3, Vec4};
+use rayon::prelude::*;
+
+use super::{
+    stages::{Clock, Stage},
+    world::CpuWorld,
+};
+
+/// Pixels a side of a tile: 16 pixels of each class, a packet of parallel rays.
+const TILE: usize = 16;
+
+/// What pass 1 leaves for pass 2, row by row from the top.
+#[derive(Debug)]
+pub(super) struct Pass1 {
+    pub(super) gbuffer: Vec<GBufferPixel>,
+    pub(super) guides: Vec<Guide>,
+    /// Openness and near radiance; of the first batch where the minimum is taken after the filter.
+    pub(super) ambient: Vec<Vec4>,
+    /// Openness and near radiance of the second batch; empty where the minimum is taken before the filter.
+    pub(super) second: Vec<Vec4>,
+    /// Bent normals.
+    pub(super) bent: Vec<Vec4>,
+    pub(super) rays: RayCounts,
+    pub(super) clock: Clock,
+    pub(super) elapsed: Duration,
+}
+
+/// Rows of a band of tiles, one slice for each plane.
+struct Band<'a> {
+    gbuffer: &'a mut [GBufferPixel],
+    guides: &'a mut [Guide],
+    ambient: &'a mut [Vec4],
+    second: &'a mut [Vec4],
+    bent: &'a mut [Vec4],
+}
+
+/// What is the same for all tiles.
+struct Job<'a> {
+    world: &'a CpuWorld,
+    settings: &'a Settings,
+    view: &'a View,
+    params: &'a GatherParams<'a>,
+    clock: &'a Clock,
+}
+
+/// Buffers of one thread, reused from tile to tile.
+#[derive(Default)]
+struct Scratch {
+    rays: Vec<Ray>,
+    hits: Vec<Hit>,
+    /// Pixels of the tile that see a surface, as index into the band, with their picture coordinates.
+    seen: Vec<(usize, u32, u32)>,
+    receivers: Vec<Receiver>,
+    received: Vec<Received>,
+    direct: DirectScratch,
+    points: Vec<ShadedPoint>,
+    gathered: Vec<Gathered>,
+    gather: GatherScratch,
+}
+
+pub(super) fn run(
+    world: &CpuWorld,
+    settings: &Settings,
+    view: &View,
+    params: &GatherParams<'_>,
+    control: Control<'_>,
+) -> Result<Pass1, Cancelled> {
+    let start = Instant::now();
+    let (width, height) = view.camera.size();
+    let pixels = width as usize * height as usize;
+    let after_filter = settings.thin_minimum == ThinMinimum::AfterFilter;
+    let mut pass = Pass1 {
+        gbuffer: vec![GBufferPixel::NOTHING; pixels],
+        guides: vec![Guide::NOTHING; pixels],
+        ambient: vec![Vec4::X; pixels],
+        second: vec![Vec4::X; if after_filter { pixels } else { 0 }],
+        bent: vec![Vec4::ZERO; pixels],
+        rays: RayCounts::default(),
+        clock: Clock::default(),
+        elapsed: Duration::ZERO,
+    };
+    let rows = TILE * width as usize;
+    let bands = pass.gbuffer.chunks_mut(rows).zip(pass.guides.chunks_mut(rows)).zip(pass.ambient.chunks_mut(rows));
+    let second = pass.second.chunks_mut(rows).map(Some).chain(std::iter::repeat_with(|| None));
+    let bands: Vec<Band<'_>> = bands
+        .zip(second.zip(pass.bent.chunks_mut(rows)))
+        .map(|(((gbuffer, guides), ambient), (second, bent))| Band {
+            gbuffer,
+            guides,
+            ambient,
+            second: second.unwrap_or_default(),
+            bent,
+        })
+        .collect();
+
+    let job = Job { world, settings, view, params, clock: &pass.clock };
+    let (count, done) = (bands.len(), AtomicUsize::new(0));
+    let counts = bands.into_par_iter().enumerate().map_init(Scratch::default, |scratch, (i, mut band)| {
+        let mut counts = RayCounts::default();
+        for tile in 0..(width as usize).div_ceil(TILE) {
+            control.check()?;
+            job.tile(scratch, &mut band, tile * TILE, i * TILE, &mut counts);
+        }
+        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+        (control.progress)(done as f32 / count as f32);
+        Ok(counts)
+    });
+    pass.rays = counts.try_reduce(RayCounts::default, |a, b| Ok(a + b))?;
+    pass.elapsed = start.elapsed();
+    Ok(pass)
+}
+
+impl Job<'_> {
+    /// All stages for the tile whose first pixel is (`x0`, `y0`); `band` starts at row `y0`.
+    fn tile(&self, scratch: &mut Scratch, band: &mut Band<'_>, x0: usize, y0: usize, counts: &mut RayCounts) {
+        let start = Instant::now();
+        self.primary(scratch, band, x0, y0);
+        counts.primary += scratch.rays.len() as u64;
+        let start = self.clock.book(Stage::Primary, start);
+        counts.shadow += self.direct(scratch, band);
+        let start = self.clock.book(Stage::Direct, start);
+        self.ambient(scratch, band, counts);
+        self.clock.book(Stage::Ambient, start);
+    }
+
+    /// What each pixel sees.
+    fn primary(&self, scratch: &mut Scratch, band: &mut Band<'_>, x0: usize, y0: usize) {
+        let width = self.view.camera.size().0 as usize;
+        let (columns, rows) = (TILE.min(width - x0), band.gbuffer.len() / width);
+        let pixels = (0..rows).flat_map(|row| (x0..x0 + columns).map(move |x| (row * width + x, x, y0 + row)));
+        let (frame, seed) = (self.settings.frame, self.settings.seed);
+        scratch.rays.clear();
+        scratch.rays.extend(pixels.clone().map(|(_, x, y)| {
+            let (x, y) = (x as u32, y as u32);
+            self.view.camera.primary_ray(x, y, PixelKey::primary_seed(x, y, frame, seed))
+        }));
+        scratch.hits.clear();
+        scratch.hits.resize(scratch.rays.len(), Hit::MISS);
+        self.world.closest_hits(&scratch.rays, &mut scratch.hits);
+
+        scratch.seen.clear();
+        for ((i, x, y), (ray, hit)) in pixels.zip(scratch.rays.iter().zip(&scratch.hits)) {
+            let pixel = &mut band.gbuffer[i];
+            pixel.rays = 1;
+            if hit.is_hit() {
+                (*pixel, band.guides[i]) = self.surface(ray, hit);
+                scratch.seen.push((i, x as u32, y as u32));
+            } else {
+                pixel.emission = self.view.background;
+            }
+        }
+    }
+
+    /// Attributes of the surface that a primary ray hit.
+    fn surface(&self, ray: &Ray, hit: &Hit) -> (GBufferPixel, Guide) {
+        let camera = &self.view.camera;
+        let footprint_there = camera.footprint(camera.depth(ray.origin + hit.t * ray.direction));
+        let point = self.world.surfaces().surface_at(hit, footprint_there).facing(ray.direction);
+        let depth = camera.depth(point.position);
+        let shading_normal = match self.settings.normals {
+            Normals::Shading => point.shading_normal,
+            Normals::Smooth => point.smooth_normal,
+            Normals::Geometric => point.geometric_normal,
+        };
+        let smooth_normal = match self.settings.normals {
+            Normals::Geometric => point.geometric_normal,
+            Normals::Shading | Normals::Smooth => point.smooth_normal,
+        };
+        let (albedo, emission) = if point.unlit {
+            (Vec3::ZERO, point.albedo + point.emission)
+        } else {
+            (point.albedo, point.emission)
+        };
+        let pixel = GBufferPixel {
+            position: point.position,
+            depth,
+            geometric_normal: point.geometric_normal,
+            shading_normal,
+            smooth_normal,
+            albedo,
+            emission,
+            direct: Vec3::ZERO,
+            material: point.material,
+            instance: hit.instance,
+            rays: 1,
+        };
+        let footprint = camera.footprint(depth);
+        (pixel, Guide { position: point.position, depth, normal: smooth_normal, footprint })
+    }
+
+    /// Direct light; returns the shadow rays traced.
+    fn direct(&self, scratch: &mut Scratch, band: &mut Band<'_>) -> u64 {
+        let (frame, seed) = (self.settings.frame, self.settings.seed);
+        scratch.receivers.clear();
+        scratch.receivers.extend(scratch.seen.iter().map(|&(i, x, y)| {
+            let pixel = &band.gbuffer[i];
+            Receiver {
+                position: pixel.position,
+                geometric_normal: pixel.geometric_normal,
+                normal: pixel.shading_normal,
+                seed: PixelKey::new(x, y, frame, seed).ray_seed(u32::MAX),
+            }
+        }));
+        scratch.received.clear();
+        scratch.received.resize(scratch.receivers.len(), Received::default());
+        let lights = &self.view.lights;
+        direct_irradiance(self.world, lights, &scratch.receivers, true, &mut scratch.direct, &mut scratch.received);
+        for (&(i, ..), received) in scratch.seen.iter().zip(&scratch.received) {
+            let pixel = &mut band.gbuffer[i];
+            pixel.direct = pixel.albedo * received.irradiance * FRAC_1_PI;
+            pixel.rays += received.shadow_rays;
+        }
+        scratch.received.iter().map(|received| u64::from(received.shadow_rays)).sum()
+    }
+
+    /// Openness, near radiance and bent normal.
+    fn ambient(&self, scratch: &mut Scratch, band: &mut Band<'_>, counts: &mut RayCounts) {
+        let (frame, seed) = (self.settings.frame, self.settings.seed);
+        // Class by class, so that the rays of a run share their directions on flat surfaces.
+        scratch.seen.sort_by_key(|&(i, x, y)| (ambray_core::sampling::sample_class(x, y), i));
+        scratch.points.clear();
+        scratch.points.extend(scratch.seen.iter().map(|&(i, x, y)| {
+            let pixel = &band.gbuffer[i];
+            ShadedPoint {
+                position: pixel.position,
+                geometric_normal: pixel.geometric_normal,
+                normal: pixel.shading_normal,
+                key: PixelKey::new(x, y, frame, seed),
+            }
+        }));
+        scratch.gathered.clear();
+        scratch.gathered.resize(scratch.points.len(), Gathered::default());
+        gather(self.world, self.params, &scratch.points, &mut scratch.gather, &mut scratch.gathered);
+
+        for (&(i, ..), gathered) in scratch.seen.iter().zip(&scratch.gathered) {
+            if band.second.is_empty() {
+                band.ambient[i] = gathered.near.extend(gathered.openness).wxyz();
+            } else {
+                band.ambient[i] = gathered.near_first.extend(gathered.first).wxyz();
+                band.second[i] = gathered.near_second.extend(gathered.second).wxyz();
+            }
+            band.bent[i] = gathered.bent.extend(0.0);
+            band.gbuffer[i].rays += gathered.ambient_rays + gathered.chord_rays + gathered.shadow_rays;
+            counts.ambient += u64::from(gathered.ambient_rays);
+            counts.chord += u64::from(gathered.chord_rays);
+            counts.shadow += u64::from(gathered.shadow_rays);
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! The scene as the method sees it: the tracer for hits, the scene's surfaces for what is there.
+
+use std::sync::Arc;
+
+use ambray_core::trace::{Diffuse, Hit, Ray, Trace, World};
+use ambray_scene::{Scene, surface::Surfaces};
+
+use crate::{BuildOptions, Tracer};
+
+/// Tracer and surfaces of a scene.
+#[derive(Debug)]
+pub struct CpuWorld {
+    tracer: Tracer<Arc<Surfaces>>,
+    surfaces: Arc<Surfaces>,
+}
+
+impl CpuWorld {
+    pub(super) fn new(scene: Arc<Scene>, options: BuildOptions) -> Self {
+        let surfaces = Arc::new(Surfaces::new(Arc::clone(&scene)));
+        Self { tracer: Tracer::build(&scene, Arc::clone(&surfaces), options), surfaces }
+    }
+
+    /// The trees.
+    #[must_use]
+    pub const fn tracer(&self) -> &Tracer<Arc<Surfaces>> {
+        &self.tracer
+    }
+
+    /// Attributes of surfaces.
+    #[must_use]
+    pub fn surfaces(&self) -> &Surfaces {
+        &self.surfaces
+    }
+}
+
+impl Trace for CpuWorld {
+    fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit]) {
+        self.tracer.closest_hits(rays, hits);
+    }
+
+    fn any_hits(&self, rays: &[Ray], blocked: &mut [bool]) {
+        self.tracer.any_hits(rays, blocked);
+    }
+}
+
+impl World for CpuWorld {
+    fn diffuse_at(&self, ray: &Ray, hit: &Hit, width: f32) -> Diffuse {
+        let point = self.surfaces.diffuse_at(hit, width);
+        let turned = point.geometric_normal.dot(ray.direction) > 0.0;
+        let geometric_normal = if turned { -point.geometric_normal } else { point.geometric_normal };
+        Diffuse { position: point.position, geometric_normal, albedo: point.albedo }
+    }
+}

@@ -1,0 +1,107 @@
+//! Vectors of `f32` as the kernels see them, so that each kernel is written once.
+//!
+//! Every operation is one IEEE 754 operation a lane, with the NaN rule of x86 for minima and maxima, so all
+//! implementations return the same bits.
+
+/// `W` lanes of `f32`. Masks have lane i in bit i.
+pub(crate) trait Lanes<const W: usize>: Copy {
+    fn splat(x: f32) -> Self;
+    fn load(x: &[f32; W]) -> Self;
+    fn to_array(self) -> [f32; W];
+    fn add(self, other: Self) -> Self;
+    fn sub(self, other: Self) -> Self;
+    fn mul(self, other: Self) -> Self;
+    fn div(self, other: Self) -> Self;
+    /// `if self < other { self } else { other }`
+    fn min(self, other: Self) -> Self;
+    /// `if self > other { self } else { other }`
+    fn max(self, other: Self) -> Self;
+    /// Lanes where `self <= other`; false for NaN.
+    fn le(self, other: Self) -> u32;
+    /// Lanes where `self < other`; false for NaN.
+    fn lt(self, other: Self) -> u32;
+    /// `self` where the mask is set, `other` elsewhere.
+    fn select(self, mask: u32, other: Self) -> Self;
+}
+
+/// Plain arrays: any machine, vectorised by the compiler as far as it can.
+#[derive(Clone, Copy)]
+#[repr(align(32))]
+pub(crate) struct Array<const W: usize>([f32; W]);
+
+impl<const W: usize> Array<W> {
+    #[inline(always)]
+    fn zip(self, other: Self, f: impl Fn(f32, f32) -> f32) -> Self {
+        let mut out = [0.0; W];
+        for i in 0..W {
+            out[i] = f(self.0[i], other.0[i]);
+        }
+        Self(out)
+    }
+
+    #[inline(always)]
+    fn compare(self, other: Self, f: impl Fn(f32, f32) -> bool) -> u32 {
+        let mut mask = 0;
+        for i in 0..W {
+            mask |= u32::from(f(self.0[i], other.0[i])) << i;
+        }
+        mask
+    }
+}
+
+impl<const W: usize> Lanes<W> for Array<W> {
+    #[inline(always)]
+    fn splat(x: f32) -> Self {
+        Self([x; W])
+    }
+    #[inline(always)]
+    fn load(x: &[f32; W]) -> Self {
+        Self(*x)
+    }
+    #[inline(always)]
+    fn to_array(self) -> [f32; W] {
+        self.0
+    }
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        self.zip(other, |a, b| a + b)
+    }
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        self.zip(other, |a, b| a - b)
+    }
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        self.zip(other, |a, b| a * b)
+    }
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        self.zip(other, |a, b| a / b)
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        self.zip(other, |a, b| if a < b { a } else { b })
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        self.zip(other, |a, b| if a > b { a } else { b })
+    }
+    #[inline(always)]
+    fn le(self, other: Self) -> u32 {
+        self.compare(other, |a, b| a <= b)
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> u32 {
+        self.compare(other, |a, b| a < b)
+    }
+    #[inline(always)]
+    fn select(self, mask: u32, other: Self) -> Self {
+        let mut out = other.0;
+        for i in 0..W {
+            if mask >> i & 1 != 0 {
+                out[i] = self.0[i];
+            }
+        }
+        Self(out)
+    }
+}

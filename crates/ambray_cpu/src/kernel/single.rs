@@ -1,0 +1,139 @@
+//! One ray through the trees.
+
+use std::mem::MaybeUninit;
+
+use ambray_core::trace::{Hit, Ray};
+
+use super::lanes::Lanes;
+use super::ray::Prepared;
+use super::triangle::{self, Entry};
+use super::{Query, Scene, slab};
+use crate::bvh::layout::{Blas, Child, Node};
+
+/// Node or leaf still to be visited: near distance in the upper half (not negative, so its bits sort like the number),
+/// child in the lower.
+type Pending = u64;
+
+/// Closest hit of `ray`, or any hit if the query is content with that.
+#[inline(always)]
+pub(crate) fn trace<const W: usize, L: Lanes<W>, Q: Query>(
+    scene: &Scene<'_, W>,
+    ray: &Ray,
+    stack: &mut [MaybeUninit<Pending>],
+) -> Hit {
+    let Some(prepared) = Prepared::new(ray.origin, ray.direction).filter(|_| ray.t_max > 0.0) else {
+        return Hit::MISS;
+    };
+    let mut best = Hit { t: ray.t_max, ..Hit::MISS };
+    let entry = Entry { instance: None, near: 0.0, seed: ray.seed, alpha: scene.alpha };
+    let done = blas::<W, L, Q>(scene.baked, Child::ROOT, &prepared, &entry, &mut best, stack);
+    if !(done && Q::ANY) && !scene.shared.nodes.is_empty() {
+        instances::<W, L, Q>(scene, ray, &prepared, &mut best, stack);
+    }
+    if best.is_hit() { best } else { Hit::MISS }
+}
+
+/// Visits the instances of shared meshes. Returns whether the query is answered.
+#[inline(always)]
+pub(crate) fn instances<const W: usize, L: Lanes<W>, Q: Query>(
+    scene: &Scene<'_, W>,
+    ray: &Ray,
+    prepared: &Prepared,
+    best: &mut Hit,
+    stack: &mut [MaybeUninit<Pending>],
+) -> bool {
+    let (above, below) = stack.split_at_mut(scene.instance_stack);
+    let limit = best.t;
+    walk::<W, L>(&scene.shared.nodes, Child::ROOT, prepared, limit, above, |leaf, near| {
+        let placed = &scene.shared.instances[leaf];
+        let object = Prepared::transformed(&placed.object_from_world, ray.origin, ray.direction);
+        if let Some(object) = object {
+            let entry = Entry { instance: Some(placed.instance), near, seed: ray.seed, alpha: scene.alpha };
+            let blas_ = &scene.meshes[placed.blas as usize];
+            if blas::<W, L, Q>(blas_, Child::ROOT, &object, &entry, best, below) {
+                return None;
+            }
+        }
+        Some(best.t)
+    })
+}
+
+/// Visits a tree of triangles below `start`. Returns whether the query is answered.
+#[inline(always)]
+pub(crate) fn blas<const W: usize, L: Lanes<W>, Q: Query>(
+    tree: &Blas<W>,
+    start: Child,
+    ray: &Prepared,
+    entry: &Entry<'_>,
+    best: &mut Hit,
+    stack: &mut [MaybeUninit<Pending>],
+) -> bool {
+    if tree.nodes.is_empty() {
+        return false;
+    }
+    let limit = best.t;
+    walk::<W, L>(&tree.nodes, start, ray, limit, stack, |leaf, _| {
+        let answered = triangle::block::<W, L, Q>(&tree.blocks[leaf], ray, entry, best);
+        (!answered).then_some(best.t)
+    })
+}
+
+/// Walks the tree front to back and hands each leaf that the ray meets within `limit`, with its near distance, to `leaf`, which
+/// returns the new limit, or `None` to stop. Returns whether it was stopped.
+#[inline(always)]
+fn walk<const W: usize, L: Lanes<W>>(
+    nodes: &[Node<W>],
+    start: Child,
+    ray: &Prepared,
+    mut limit: f32,
+    stack: &mut [MaybeUninit<Pending>],
+    mut leaf: impl FnMut(usize, f32) -> Option<f32>,
+) -> bool {
+    let mut top = 0;
+    let mut child = start;
+    let mut child_near = 0.0;
+    loop {
+        if child.is_leaf() {
+            match leaf(child.index(), child_near) {
+                Some(new) => limit = new,
+                None => return true,
+            }
+        } else {
+            let node = &nodes[child.index()];
+            let (mut mask, near) = slab::children::<W, L>(node, ray, limit);
+            let near = near.to_array();
+            let bottom = top;
+            while mask != 0 {
+                let slot = mask.trailing_zeros() as usize % W;
+                mask &= mask - 1;
+                let pending = u64::from(near[slot].to_bits()) << 32 | u64::from(node.children[slot].0);
+                // Insertion keeps the new entries sorted, the nearest on top; most nodes add one to three.
+                let mut at = top;
+                while at > bottom {
+                    // SAFETY: entries between `bottom` and `top` were written by this loop.
+                    let below = unsafe { stack[at - 1].assume_init() };
+                    if below >= pending {
+                        break;
+                    }
+                    stack[at] = MaybeUninit::new(below);
+                    at -= 1;
+                }
+                stack[at] = MaybeUninit::new(pending);
+                top += 1;
+            }
+        }
+        loop {
+            if top == 0 {
+                return false;
+            }
+            top -= 1;
+            // SAFETY: entries below `top` were written before `top` moved past them.
+            let pending = unsafe { stack[top].assume_init() };
+            child_near = f32::from_bits((pending >> 32) as u32);
+            child = Child(pending as u32);
+            if child_near <= limit {
+                break;
+            }
+        }
+    }
+}

@@ -1,0 +1,33 @@
+//! What was built, in numbers.
+
+use std::time::Duration;
+
+use crate::{Isa, Width};
+
+/// Size and quality of a [`Tracer`](crate::Tracer)'s trees, all of them together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stats {
+    /// Triangles in leaves; those of shared meshes count once. Dropped triangles are not among them.
+    pub triangles: usize,
+    /// Triangles that no ray can hit: of zero area, not finite, or beyond 10¹² units.
+    pub dropped: usize,
+    /// Instances that share a tree with others.
+    pub shared_instances: usize,
+    /// Inner nodes.
+    pub nodes: usize,
+    /// Leaf blocks; triangles per leaf are `triangles / leaf_blocks`.
+    pub leaf_blocks: usize,
+    /// Memory of nodes and leaf blocks.
+    pub bytes: usize,
+    /// Surface-area cost of the tree of unshared triangles: expected nodes plus blocks that a long random ray which meets
+    /// the scene's box visits (MacDonald and Booth 1990), both counted as 1.
+    pub sah_cost: f32,
+    /// Largest number of nodes on a way from a root to a leaf block, instance level included.
+    pub depth: usize,
+    /// Wall-clock time of the build.
+    pub build_time: Duration,
+    /// Instruction set in use.
+    pub isa: Isa,
+    /// Width in use.
+    pub width: Width,
+}

@@ -1,0 +1,248 @@
+//! Every tree, width and instruction set returns exactly what a loop over all triangles returns.
+
+mod common;
+
+use ambray_core::trace::{Hit, Ray, Trace};
+use ambray_cpu::{AlphaTest, BuildOptions, Isa, Opaque, Quality, Tracer, Width};
+use ambray_scene::{Instance, Scene};
+use common::{BruteForce, Random, scene, soup};
+use glam::{Affine3A, Mat3, Quat, Vec3};
+
+/// All combinations of options that this machine can run.
+fn all_options() -> Vec<BuildOptions> {
+    let mut all = Vec::new();
+    for quality in Quality::ALL {
+        for isa in Isa::ALL.into_iter().filter(|isa| isa.is_available()) {
+            for width in Width::ALL {
+                for packets in [false, true] {
+                    all.push(BuildOptions { quality, isa: Some(isa), width: Some(width), packets });
+                }
+            }
+        }
+    }
+    all
+}
+
+#[track_caller]
+fn check<A: AlphaTest>(scene: &Scene, rays: &[Ray], alpha: &A) {
+    let reference = BruteForce::new(scene, alpha);
+    let mut expected = vec![Hit::MISS; rays.len()];
+    reference.closest_hits(rays, &mut expected);
+    for options in all_options() {
+        let tracer = Tracer::build(scene, alpha, options);
+        let mut hits = vec![Hit::MISS; rays.len()];
+        tracer.closest_hits(rays, &mut hits);
+        let mut blocked = vec![false; rays.len()];
+        tracer.any_hits(rays, &mut blocked);
+        for i in 0..rays.len() {
+            assert_eq!(hits[i], expected[i], "{options:?}, ray {i}: {:?}", rays[i]);
+            assert_eq!(blocked[i], expected[i].is_hit(), "{options:?}, any, ray {i}: {:?}", rays[i]);
+        }
+    }
+}
+
+/// Triangles of many shapes in [-1, 1]³.
+fn random_triangles(random: &mut Random, count: usize) -> Vec<[Vec3; 3]> {
+    let mut triangles: Vec<[Vec3; 3]> = Vec::new();
+    while triangles.len() < count {
+        let (p, q, r) = (random.cube(), random.cube(), random.cube());
+        let axis = random.below(3) as usize;
+        triangles.push(match random.below(10) {
+            0..=3 => [p, p + q * 0.2, p + r * 0.2],
+            4 => [p, q, r],
+            5 => [p, p + q, p + q + r * 1e-5], // needle
+            6 => {
+                let flat = |mut v: Vec3| {
+                    v[axis] = p[axis];
+                    v
+                };
+                [p, flat(q), flat(r)]
+            }
+            7 => [p, q, p + (q - p) * 0.5], // collinear, or nearly so
+            8 => [p, p, q],
+            _ => triangles.get(random.below(count as u32) as usize).copied().unwrap_or([p, q, r]),
+        });
+    }
+    triangles
+}
+
+/// Rays of many kinds about the triangles, in packets of 16 and alone.
+fn random_rays(random: &mut Random, triangles: &[[Vec3; 3]], count: usize) -> Vec<Ray> {
+    let mut rays = Vec::new();
+    let on_triangle = |random: &mut Random| {
+        let [a, b, c] = triangles[random.below(triangles.len() as u32) as usize];
+        let (mut u, mut v) = (random.unit(), random.unit());
+        match random.below(4) {
+            0 => (u, v) = (0.0, 0.0),
+            1 => v = 0.0,
+            _ => {}
+        }
+        if u + v > 1.0 {
+            (u, v) = (1.0 - u, 1.0 - v);
+        }
+        a + (b - a) * u + (c - a) * v
+    };
+    let kinds = 6;
+    for kind in 0..kinds * count / 16 {
+        let shared = match random.below(3) {
+            0 => random.direction(),
+            1 => {
+                let mut d = Vec3::ZERO;
+                d[random.below(3) as usize] = if random.below(2) == 0 { 1.0 } else { -1.0 };
+                d
+            }
+            _ => {
+                let mut d = random.direction();
+                d[random.below(3) as usize] = if random.below(2) == 0 { 0.0 } else { -0.0 };
+                d.normalize_or(Vec3::X)
+            }
+        };
+        let start = random.cube();
+        for _ in 0..16 {
+            let t_max = [0.1, 1.0, f32::INFINITY][random.below(3) as usize];
+            let (origin, direction) = match kind % kinds {
+                0 => (random.cube() * 1.5, random.direction()),
+                1 => (random.cube() * 1.5, shared),
+                2 => (start + random.cube() * 0.05, shared),
+                3 => (on_triangle(random), random.direction()), // starts on a surface
+                4 => {
+                    let origin = random.cube() * 2.0;
+                    (origin, (on_triangle(random) - origin).normalize_or(Vec3::Y)) // corners and edges
+                }
+                _ => {
+                    let [a, b, _] = triangles[random.below(triangles.len() as u32) as usize];
+                    (a - (b - a), (b - a).normalize_or(Vec3::Z)) // along an edge
+                }
+            };
+            rays.push(Ray { origin, t_max, direction, seed: random.bits() });
+        }
+    }
+    rays
+}
+
+fn scaled(rays: &[Ray], scale: f32, offset: Vec3) -> Vec<Ray> {
+    rays.iter().map(|r| Ray { origin: r.origin * scale + offset, t_max: r.t_max * scale, ..*r }).collect()
+}
+
+#[test]
+fn soups() {
+    let mut random = Random(1);
+    for (size, scale, offset) in [
+        (1, 1.0, 0.0),
+        (2, 1.0, 0.0),
+        (7, 1.0, 0.0),
+        (17, 1.0, 0.0),
+        (100, 1.0, 0.0),
+        (1500, 1.0, 0.0),
+        (300, 1e-3, 0.0),
+        (300, 1.0, 1e5),
+        (300, 1e-3, 1e5),
+        (300, 1e6, 0.0),
+        (300, 1e-12, 0.0),
+        (300, 1e11, 0.0),
+    ] {
+        let offset = Vec3::new(offset, -offset, offset * 0.5);
+        let triangles: Vec<_> = random_triangles(&mut random, size);
+        let rays = scaled(&random_rays(&mut random, &triangles, 512), scale, offset);
+        let moved: Vec<_> = triangles.iter().map(|t| t.map(|p| p * scale + offset)).collect();
+        let (first, second) = moved.split_at(size / 3);
+        check(&scene(vec![soup(first), soup(second)]), &rays, &Opaque);
+    }
+}
+
+#[test]
+fn instances() {
+    let mut random = Random(2);
+    let triangles = random_triangles(&mut random, 60);
+    let rays = random_rays(&mut random, &triangles, 1024);
+    let mut scene =
+        scene(vec![soup(&triangles[..20]), soup(&triangles[20..]), soup(&triangles[..5]), soup(&[])]);
+    for i in 0..40 {
+        let rotation = Mat3::from_quat(Quat::from_scaled_axis(random.cube() * 3.0));
+        let mirror = if i % 3 == 0 { Vec3::new(-1.0, 1.0, 1.0) } else { Vec3::ONE };
+        let stretch = Mat3::from_diagonal(mirror * (Vec3::ONE * 0.1 + random.cube().abs()));
+        let matrix = if i == 7 { Mat3::ZERO } else { rotation * stretch };
+        scene.instances.push(Instance {
+            mesh: if i == 11 { 3 } else { i % 2 },
+            world_from_object: Affine3A::from_mat3_translation(matrix, random.cube()),
+        });
+    }
+    check(&scene, &rays, &Opaque);
+    // A single mesh, mirrored and stretched: baked.
+    let mut scene = common::scene(vec![soup(&triangles)]);
+    scene.instances[0].world_from_object =
+        Affine3A::from_mat3_translation(Mat3::from_diagonal(Vec3::new(-2.0, 0.5, 1.0)), Vec3::X);
+    check(&scene, &rays, &Opaque);
+}
+
+/// Accepts a pattern of holes that depends on everything it is told.
+struct Holes;
+
+impl AlphaTest for Holes {
+    fn is_opaque(&self, mesh: u32) -> bool {
+        mesh == 0
+    }
+    fn accepts(&self, instance: u32, triangle: u32, u: f32, v: f32, seed: u32) -> bool {
+        assert_ne!(instance, 0, "opaque meshes are not asked about");
+        (u * 7.0).fract() > 0.3 && (v * 5.0).fract() > 0.2 && (triangle ^ seed ^ instance) % 4 != 0
+    }
+}
+
+#[test]
+fn alpha() {
+    let mut random = Random(3);
+    let triangles = random_triangles(&mut random, 400);
+    let rays = random_rays(&mut random, &triangles, 1024);
+    let mut scene = scene(vec![soup(&triangles[..100]), soup(&triangles[100..200]), soup(&triangles[200..])]);
+    check(&scene, &rays, &Holes);
+    scene.instances.push(Instance { mesh: 2, world_from_object: Affine3A::from_scale(Vec3::splat(1.3)) });
+    check(&scene, &rays, &Holes);
+}
+
+#[test]
+fn empty_scenes_and_strange_rays() {
+    let mut random = Random(4);
+    let triangles = random_triangles(&mut random, 50);
+    let mut rays = random_rays(&mut random, &triangles, 64);
+    for (i, ray) in rays.iter_mut().enumerate() {
+        match i % 7 {
+            0 => ray.t_max = 0.0,
+            1 => ray.t_max = f32::NAN,
+            2 => ray.t_max = -1.0,
+            3 => ray.direction = Vec3::ZERO,
+            4 => ray.direction.y = f32::NAN,
+            5 => ray.origin.x = f32::INFINITY,
+            _ => {}
+        }
+    }
+    check(&scene(vec![soup(&triangles)]), &rays, &Opaque);
+    check(&Scene::default(), &rays, &Opaque);
+    check(&scene(vec![soup(&[])]), &rays, &Opaque);
+    let mut unplaced = scene(vec![soup(&triangles)]);
+    unplaced.instances.clear();
+    check(&unplaced, &rays, &Opaque);
+    // Triangles that cannot be hit: points, lines, and beyond the range of the arithmetic.
+    let far = Vec3::splat(2e12);
+    let flat = [[Vec3::ONE; 3], [Vec3::ZERO, Vec3::X, Vec3::X * 2.0], [far, Vec3::X, Vec3::Y]];
+    let scene = scene(vec![soup(&flat)]);
+    check(&scene, &rays, &Opaque);
+    assert_eq!(Tracer::build(&scene, Opaque, BuildOptions::default()).stats().dropped, 3);
+}
+
+#[test]
+fn same_t_in_any_order_of_triangles() {
+    let mut random = Random(5);
+    let mut triangles = random_triangles(&mut random, 800);
+    let rays = random_rays(&mut random, &triangles, 2048);
+    let trace = |triangles: &[[Vec3; 3]]| {
+        let mut hits = vec![Hit::MISS; rays.len()];
+        Tracer::build(&scene(vec![soup(triangles)]), Opaque, BuildOptions::default())
+            .closest_hits(&rays, &mut hits);
+        hits.into_iter().map(|hit| hit.t).collect::<Vec<_>>()
+    };
+    let before = trace(&triangles);
+    for i in (1..triangles.len()).rev() {
+        triangles.swap(i, random.below(i as u32 + 1) as usize);
+    }
+    assert_eq!(before, trace(&triangles));
+}
