@@ -1,16 +1,17 @@
 //! Ambray: real-time ambient lighting by ray tracing.
 #![forbid(unsafe_code)]
 
-mod aov;
-mod frame;
-mod query;
+mod framing;
 mod renderer;
-mod view;
+mod resolve;
 
-pub use ambray_core::settings;
+pub use ambray_core::{
+    aov::{Aov, AovKind},
+    control::Control,
+    frame::{Frame, FrameStats, GBufferPixel, RayCounts, StageTimes},
+    query::{QueryPoint, QueryResult},
+    settings,
+    view::View,
+};
 pub use ambray_scene as scene;
-pub use aov::{Aov, AovKind};
-pub use frame::{Frame, FrameStats, GBufferPixel, RayCounts, StageTimes};
-pub use query::{QueryPoint, QueryResult};
-pub use renderer::{BuildStats, Control, RenderError, Renderer};
-pub use view::View;
+pub use renderer::{BuildStats, RenderError, Renderer};

@@ -1,14 +1,18 @@
 //! The renderer: a scene made ready for tracing, from which frames and points are evaluated.
 
-use std::{
-    sync::atomic::{AtomicBool, Ordering},
-    time::Duration,
-};
+use std::{sync::Arc, time::Duration};
 
-use ambray_core::settings::{Settings, SettingsError};
+use ambray_core::{
+    control::Control,
+    frame::Frame,
+    query::{QueryPoint, QueryResult},
+    settings::{Settings, SettingsError},
+    view::View,
+};
+use ambray_cpu::{BackendError, BuildOptions, CpuBackend};
 use ambray_scene::Scene;
 
-use crate::{Frame, QueryPoint, QueryResult};
+use crate::resolve;
 
 /// Why nothing was rendered.
 #[derive(Debug, thiserror::Error)]
@@ -34,51 +38,27 @@ pub enum RenderError {
         /// Its place in the list, from 0.
         index: usize,
         /// What is wrong.
-        reason: String,
+        reason: &'static str,
     },
     /// The threads could not be started.
-    #[error("threads could not be started: {0}")]
+    #[error("the threads could not be started: {0}")]
     Threads(String),
     /// [`Control::cancel`] was set.
     #[error("cancelled")]
     Cancelled,
 }
 
-/// How the caller follows and stops long work.
-#[derive(Clone, Copy)]
-pub struct Control<'a> {
-    /// Called from any thread with the share done, in `[0, 1]`, never decreasing by much.
-    pub progress: &'a (dyn Fn(f32) + Sync),
-    /// Work stops soon after this is set.
-    pub cancel: &'a AtomicBool,
-    /// Number of threads, 0 for all cores. The result does not depend on it.
-    pub threads: usize,
-}
-
-impl std::fmt::Debug for Control<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Control").field("cancel", self.cancel).field("threads", &self.threads).finish()
-    }
-}
-
-static NEVER: AtomicBool = AtomicBool::new(false);
-
-impl Default for Control<'_> {
-    fn default() -> Self {
-        Self { progress: &|_| (), cancel: &NEVER, threads: 0 }
-    }
-}
-
-impl Control<'_> {
-    /// Whether the caller wants to stop.
-    #[must_use]
-    pub fn is_cancelled(&self) -> bool {
-        self.cancel.load(Ordering::Relaxed)
+impl From<BackendError> for RenderError {
+    fn from(error: BackendError) -> Self {
+        match error {
+            BackendError::Cancelled(_) => Self::Cancelled,
+            other => Self::Threads(other.to_string()),
+        }
     }
 }
 
 /// What the scene became when it was made ready.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BuildStats {
     /// Triangles, instances counted each time.
     pub triangles: u64,
@@ -88,37 +68,61 @@ pub struct BuildStats {
     pub acceleration_bytes: u64,
     /// Wall time to build them.
     pub build_time: Duration,
+    /// Instruction set in use.
+    pub isa: &'static str,
 }
 
 /// A scene made ready for tracing.
 #[derive(Debug)]
 pub struct Renderer {
-    scene: Scene,
+    scene: Arc<Scene>,
+    backend: CpuBackend,
 }
 
 impl Renderer {
     /// Builds the acceleration structures of `scene`.
+    ///
+    /// # Panics
+    /// If indices within the scene are out of range; scenes that were loaded are sound.
     #[must_use]
     pub fn new(scene: Scene) -> Self {
-        Self { scene }
+        let scene = Arc::new(scene);
+        let backend = CpuBackend::new(Arc::clone(&scene), BuildOptions::default());
+        Self { scene, backend }
     }
 
     /// The scene.
     #[must_use]
-    pub const fn scene(&self) -> &Scene {
+    pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
     /// What building took.
     #[must_use]
     pub fn build_stats(&self) -> BuildStats {
-        BuildStats::default()
+        let stats = self.backend.world().tracer().stats();
+        BuildStats {
+            triangles: self.scene.triangle_count(),
+            instances: self.scene.instances.len() as u64,
+            acceleration_bytes: stats.bytes as u64,
+            build_time: stats.build_time,
+            isa: stats.isa.name(),
+        }
+    }
+
+    /// Checks `settings` and replaces every `auto` by a value of the scene.
+    pub fn view(&self, settings: &Settings) -> Result<View, RenderError> {
+        let errors = settings.validate();
+        if !errors.is_empty() {
+            return Err(RenderError::Settings(errors));
+        }
+        resolve::view(settings, &self.scene, self.backend.world())
     }
 
     /// Renders a frame. The same settings and scene give the same frame, bit for bit, for any number of threads.
     pub fn render(&self, settings: &Settings, control: Control<'_>) -> Result<Frame, RenderError> {
-        let _ = (settings, control);
-        unimplemented!()
+        let view = self.view(settings)?;
+        Ok(self.backend.render(settings, &view, control)?)
     }
 
     /// Evaluates ambient light at `points`; result `i` belongs to point `i`.
@@ -128,7 +132,23 @@ impl Renderer {
         points: &[QueryPoint],
         control: Control<'_>,
     ) -> Result<Vec<QueryResult>, RenderError> {
-        let _ = (settings, points, control);
-        unimplemented!()
+        let view = self.view(settings)?;
+        for (index, point) in points.iter().enumerate() {
+            check_point(point).map_err(|reason| RenderError::Point { index, reason })?;
+        }
+        Ok(self.backend.query(settings, &view, points, control)?)
     }
+}
+
+fn check_point(point: &QueryPoint) -> Result<(), &'static str> {
+    if !point.position.is_finite() {
+        return Err("the position is not finite");
+    }
+    if point.normal.try_normalize().is_none() {
+        return Err("the normal has no direction");
+    }
+    if u32::from(point.class) >= ambray_core::sampling::CLASS_COUNT {
+        return Err("the sample class is not below 16");
+    }
+    Ok(())
 }

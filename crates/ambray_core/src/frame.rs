@@ -1,35 +1,180 @@
-//! Orthonormal frame of a normal (Duff et al. 2017, "Building an orthonormal basis, revisited"; spec §1).
+//! A rendered frame: planes of one value a pixel, row by row from the top.
 
-use glam::Vec3;
+use std::time::Duration;
 
-/// Right-handed frame (t, b, n). Equal normals give equal frames, which the interleaved pattern relies on.
+use glam::{Vec3, Vec4};
+use serde::Serialize;
+
+use crate::{aov::Aov, view::View};
+
+/// What pass 1 saw at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GBufferPixel {
+    /// Position, world space.
+    pub position: Vec3,
+    /// View depth, scene units; infinite where nothing is seen.
+    pub depth: f32,
+    /// Unit normal of the triangle towards the viewer.
+    pub geometric_normal: Vec3,
+    /// Unit normal that directs the rays.
+    pub shading_normal: Vec3,
+    /// Unit normal without normal map, which the filter compares.
+    pub smooth_normal: Vec3,
+    /// Albedo.
+    pub albedo: Vec3,
+    /// Emitted radiance; the base colour of unlit surfaces; the background where nothing is seen.
+    pub emission: Vec3,
+    /// Direct light reflected by the surface.
+    pub direct: Vec3,
+    /// Material index, `u32::MAX` where nothing is seen.
+    pub material: u32,
+    /// Instance index, `u32::MAX` where nothing is seen.
+    pub instance: u32,
+    /// Rays traced for the pixel, of all types.
+    pub rays: u32,
+}
+
+impl GBufferPixel {
+    /// A pixel that sees no surface.
+    pub const NOTHING: Self = Self {
+        position: Vec3::ZERO,
+        depth: f32::INFINITY,
+        geometric_normal: Vec3::ZERO,
+        shading_normal: Vec3::ZERO,
+        smooth_normal: Vec3::ZERO,
+        albedo: Vec3::ZERO,
+        emission: Vec3::ZERO,
+        direct: Vec3::ZERO,
+        material: u32::MAX,
+        instance: u32::MAX,
+        rays: 0,
+    };
+
+    /// Whether the pixel sees a surface.
+    #[must_use]
+    pub const fn is_surface(&self) -> bool {
+        self.instance != u32::MAX
+    }
+}
+
+/// A rendered frame.
+#[derive(Clone, Debug)]
 pub struct Frame {
-    /// First tangent t.
-    pub tangent: Vec3,
-    /// Second tangent b.
-    pub bitangent: Vec3,
-    /// The unit normal n.
-    pub normal: Vec3,
+    /// Pixels in a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// The picture: linear RGB radiance.
+    pub beauty: Vec<Vec3>,
+    /// Attributes of what is seen.
+    pub gbuffer: Vec<GBufferPixel>,
+    /// Openness (x) and near radiance (yzw) before the filter.
+    pub ambient_raw: Vec<Vec4>,
+    /// Openness (x) and near radiance (yzw) after the filter.
+    pub ambient: Vec<Vec4>,
+    /// Mean open direction after the filter, not normalised.
+    pub bent: Vec<Vec3>,
+    /// The view with everything chosen: camera, radius, lights.
+    pub view: View,
+    /// What it took.
+    pub stats: FrameStats,
+}
+
+/// Rays traced, by type.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct RayCounts {
+    /// From the camera.
+    pub primary: u64,
+    /// First batch: openness and near radiance.
+    pub ambient: u64,
+    /// Second batch: thin objects.
+    pub chord: u64,
+    /// To lights.
+    pub shadow: u64,
+}
+
+impl RayCounts {
+    /// Sum over the types.
+    #[must_use]
+    pub const fn total(&self) -> u64 {
+        self.primary + self.ambient + self.chord + self.shadow
+    }
+}
+
+impl std::ops::Add for RayCounts {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            primary: self.primary + other.primary,
+            ambient: self.ambient + other.ambient,
+            chord: self.chord + other.chord,
+            shadow: self.shadow + other.shadow,
+        }
+    }
+}
+
+/// Wall time of the stages of a frame. Stages of pass 1 run interleaved over tiles; each gets its share.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct StageTimes {
+    /// Primary rays and surface attributes.
+    pub primary: Duration,
+    /// Direct light with its shadow rays.
+    pub direct: Duration,
+    /// First and second batch of ambient rays.
+    pub ambient: Duration,
+    /// Geometry-aware filter and composition.
+    pub filter: Duration,
+    /// The whole frame, without building the scene.
+    pub total: Duration,
+}
+
+/// What a frame took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FrameStats {
+    /// Rays by type.
+    pub rays: RayCounts,
+    /// Wall time by stage.
+    pub times: StageTimes,
+    /// Threads used.
+    pub threads: usize,
 }
 
 impl Frame {
-    /// Frame of the unit normal `n`.
+    /// The values of a plane, channel after channel within a pixel ([`Aov::channels`]), pixels row by row from the top.
     #[must_use]
-    pub fn from_normal(n: Vec3) -> Self {
-        let s = if n.z >= 0.0 { 1.0 } else { -1.0 };
-        let p = -1.0 / (s + n.z);
-        let q = n.x * n.y * p;
-        Self {
-            tangent: Vec3::new(1.0 + s * n.x * n.x * p, s * q, -s * n.x),
-            bitangent: Vec3::new(q, s + n.y * n.y * p, -n.y),
-            normal: n,
+    pub fn plane(&self, aov: Aov) -> Vec<f32> {
+        let pixels = 0..self.beauty.len();
+        let vectors = |f: &dyn Fn(usize) -> Vec3| pixels.clone().flat_map(|i| f(i).to_array()).collect();
+        let scalars = |f: &dyn Fn(usize) -> f32| pixels.clone().map(f).collect();
+        let index = |id: u32| if id == u32::MAX { -1.0 } else { id as f32 };
+        match aov {
+            Aov::Beauty => vectors(&|i| self.beauty[i]),
+            Aov::Openness => scalars(&|i| self.ambient[i].x),
+            Aov::OpennessRaw => scalars(&|i| self.ambient_raw[i].x),
+            Aov::NearRadiance => vectors(&|i| yzw(self.ambient[i])),
+            Aov::NearRadianceRaw => vectors(&|i| yzw(self.ambient_raw[i])),
+            Aov::Direct => vectors(&|i| self.gbuffer[i].direct),
+            Aov::Albedo => vectors(&|i| self.gbuffer[i].albedo),
+            Aov::Emission => vectors(&|i| self.gbuffer[i].emission),
+            Aov::Depth => scalars(&|i| self.gbuffer[i].depth),
+            Aov::Position => vectors(&|i| self.gbuffer[i].position),
+            Aov::GeometricNormal => vectors(&|i| self.gbuffer[i].geometric_normal),
+            Aov::ShadingNormal => vectors(&|i| self.gbuffer[i].shading_normal),
+            Aov::BentNormal => vectors(&|i| self.bent[i].normalize_or_zero()),
+            Aov::Material => scalars(&|i| index(self.gbuffer[i].material)),
+            Aov::Instance => scalars(&|i| index(self.gbuffer[i].instance)),
+            Aov::SampleClass => scalars(&|i| f32::from(self.class_of(i))),
+            Aov::RayCount => scalars(&|i| self.gbuffer[i].rays as f32),
         }
     }
 
-    /// World direction of `local` = (t, b, n) components.
-    #[must_use]
-    pub fn to_world(&self, local: Vec3) -> Vec3 {
-        self.tangent * local.x + self.bitangent * local.y + self.normal * local.z
+    fn class_of(&self, i: usize) -> u8 {
+        let width = self.width as usize;
+        crate::sampling::sample_class((i % width) as u32, (i / width) as u32)
     }
+}
+
+fn yzw(v: Vec4) -> Vec3 {
+    Vec3::new(v.y, v.z, v.w)
 }

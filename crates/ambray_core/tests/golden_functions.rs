@@ -4,7 +4,7 @@ mod common;
 
 use ambray_core::{
     compose::{compose, near_radiance},
-    frame::Frame,
+    basis::Basis,
     offset::offset_point,
     sampling::{CLASS_TABLE, DEFAULT_SEEDS, PixelKey, SampleSets, owen, owen_point, sobol1},
     settings::{RadianceSource, Sampling, Sequence},
@@ -15,7 +15,7 @@ use glam::Vec3;
 #[test]
 fn frames_of_normals() {
     for case in list(&golden("functions")["onb"]) {
-        let frame = Frame::from_normal(vec3(&case["n"]));
+        let frame = Basis::from_normal(vec3(&case["n"]));
         assert!(frame.tangent.abs_diff_eq(vec3(&case["t"]), 1e-6), "{case}");
         assert!(frame.bitangent.abs_diff_eq(vec3(&case["b"]), 1e-6), "{case}");
     }

@@ -1,7 +1,7 @@
 //! First batch: N rays from each point over the hemisphere.
 
 use crate::{
-    frame::Frame,
+    basis::Basis,
     offset::offset_point,
     trace::{Hit, Ray, World},
 };
@@ -77,7 +77,7 @@ impl FirstBatch {
                 for (i, point) in run.iter().enumerate() {
                     let slot = (first + i) * spp + j;
                     let sample = params.samples.direction(point.key, j as u32);
-                    let direction = Frame::from_normal(point.normal).to_world(sample.local);
+                    let direction = Basis::from_normal(point.normal).to_world(sample.local);
                     // A direction below the geometric horizon is blocked at once, without a ray (spec §5).
                     let above_horizon = direction.dot(point.geometric_normal) > 0.0;
                     let distance = if above_horizon { f32::INFINITY } else { 0.0 };

@@ -13,11 +13,11 @@ use ambray_core::{
     frame::{GBufferPixel, RayCounts},
     gather::{GatherParams, GatherScratch, Gathered, ShadedPoint, gather},
     sampling::PixelKey,
-    settings::{Normals, Settings, ThinMinimum},
+    settings::{Normals, Settings, Thin, ThinMinimum},
     trace::{Hit, Ray, Trace},
     view::View,
 };
-use glam::{Vec3, Vec4};
+use glam::{Vec3, Vec4, Vec4Swizzles};
 use rayon::prelude::*;
 
 use super::{
@@ -87,7 +87,7 @@ pub(super) fn run(
     let start = Instant::now();
     let (width, height) = view.camera.size();
     let pixels = width as usize * height as usize;
-    let after_filter = settings.thin_minimum == ThinMinimum::AfterFilter;
+    let after_filter = settings.thin != Thin::Off && settings.thin_minimum == ThinMinimum::AfterFilter;
     let mut pass = Pass1 {
         gbuffer: vec![GBufferPixel::NOTHING; pixels],
         guides: vec![Guide::NOTHING; pixels],

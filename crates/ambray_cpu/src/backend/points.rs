@@ -27,7 +27,7 @@ pub(super) fn run(
     control: Control<'_>,
 ) -> Result<Vec<QueryResult>, Cancelled> {
     let mut results = vec![QueryResult::default(); points.len()];
-    let done = AtomicUsize::new(0);
+    let (count, done) = (points.len(), AtomicUsize::new(0));
     let chunks = points.par_chunks(CHUNK).zip(results.par_chunks_mut(CHUNK)).enumerate();
     chunks.try_for_each_init(GatherScratch::default, |scratch, (chunk, (points, results))| {
         control.check()?;
@@ -42,7 +42,7 @@ pub(super) fn run(
             *result = finish(gathered, settings, view);
         }
         let done = done.fetch_add(points.len(), Ordering::Relaxed) + points.len();
-        (control.progress)(done as f32 / (results.len().max(done)) as f32);
+        (control.progress)(done as f32 / count as f32);
         Ok(())
     })?;
     Ok(results)

@@ -1,7 +1,8 @@
-//! From settings to a view: every `auto` replaced by a value of the scene.
+//! A view: settings in which every `auto` has been replaced by a value of the scene.
 
-use ambray_core::{camera::Camera, light::Light};
 use glam::Vec3;
+
+use crate::{camera::Camera, light::Light, openness::Openness};
 
 /// What a frame is rendered with once every `auto` is decided.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,6 +13,10 @@ pub struct View {
     pub camera_origin: String,
     /// Near-field radius R, scene units.
     pub radius: f32,
+    /// Fuzzy measure μ.
+    pub openness: Openness,
+    /// Distance R_c below which hits enter the average of the near radiance, scene units.
+    pub near_limit: f32,
     /// Ambient radiance L_a, linear RGB.
     pub ambient: Vec3,
     /// Colour where nothing is seen, linear RGB.

@@ -1,0 +1,104 @@
+//! A sensible radius and a sensible camera for scenes that bring none.
+
+use ambray_core::{
+    camera::Projection,
+    sampling::{DEFAULT_SEEDS, owen_point, unit_float},
+    trace::{Hit, Ray, Trace},
+};
+use ambray_scene::{Scene, SceneCamera};
+use glam::Vec3;
+
+/// Share of the scene's extent that counts as near.
+const RADIUS_SHARE: f32 = 0.1;
+/// Extents below this share of the largest one do not limit the radius: a plane has no height.
+const FLAT_SHARE: f32 = 0.1;
+/// Share of the directions from the middle of the scene that must be blocked for it to be an interior.
+const INTERIOR_SHARE: f32 = 0.75;
+
+/// Radius R: a tenth of the smallest extent that is not negligible against the largest; 1 for an empty scene.
+pub(crate) fn radius(scene: &Scene) -> f32 {
+    let Some((low, high)) = scene.bounds() else { return 1.0 };
+    let extents = (high - low).to_array();
+    let largest = extents.iter().copied().fold(0.0, f32::max);
+    let smallest = extents.into_iter().filter(|&extent| extent >= FLAT_SHARE * largest).fold(largest, f32::min);
+    if smallest > 0.0 { RADIUS_SHARE * smallest } else { 1.0 }
+}
+
+/// A perspective camera that shows the scene, and a word on how it was found.
+///
+/// Objects are seen from outside, from the front, the right and above. A scene that surrounds its middle is an
+/// interior and is seen from one end of it.
+pub(crate) fn camera(scene: &Scene, trace: &impl Trace, fov: f32, aspect: f32) -> (SceneCamera, &'static str) {
+    let bounds = scene.bounds().unwrap_or((Vec3::NEG_ONE, Vec3::ONE));
+    match interior(bounds, trace) {
+        Some((eye, target)) => (looking(eye, target, fov), "inside, along the longest free way"),
+        None => (outside(bounds, fov, aspect), "framed from the bounds"),
+    }
+}
+
+fn looking(position: Vec3, target: Vec3, vertical_fov: f32) -> SceneCamera {
+    let forward = (target - position).try_normalize().unwrap_or(Vec3::NEG_Z);
+    let right = forward.cross(Vec3::Y).try_normalize().unwrap_or(Vec3::X);
+    let projection = Projection::Perspective { vertical_fov };
+    SceneCamera { name: String::new(), position, forward, up: right.cross(forward), projection }
+}
+
+/// From the front, the right and above, at the distance from which all corners of the box are in the picture.
+fn outside((low, high): (Vec3, Vec3), fov: f32, aspect: f32) -> SceneCamera {
+    const MARGIN: f32 = 1.05;
+    let middle = 0.5 * (low + high);
+    let camera = looking(middle + Vec3::new(0.55, 0.45, 1.0), middle, fov);
+    let (forward, up) = (camera.forward, camera.up);
+    let right = forward.cross(up);
+    let tan = (0.5 * fov).tan() / MARGIN;
+    let distance = (0..8).map(|corner| {
+        let pick = |bit: u8, low: f32, high: f32| if corner & bit == 0 { low } else { high };
+        let offset = Vec3::new(pick(1, low.x, high.x), pick(2, low.y, high.y), pick(4, low.z, high.z)) - middle;
+        let needed = (offset.dot(up).abs() / tan).max(offset.dot(right).abs() / (tan * aspect));
+        needed - offset.dot(forward)
+    });
+    let distance = distance.fold(f32::MIN_POSITIVE, f32::max);
+    SceneCamera { position: middle - distance.max(1e-6) * forward, ..camera }
+}
+
+/// Eye and target within a scene that surrounds its middle.
+fn interior((low, high): (Vec3, Vec3), trace: &impl Trace) -> Option<(Vec3, Vec3)> {
+    const DIRECTIONS: u32 = 256;
+    let middle = 0.5 * (low + high);
+    let extent = high - low;
+    let directions: Vec<Vec3> = (0..DIRECTIONS)
+        .map(|i| {
+            let [u, v] = owen_point(i, DEFAULT_SEEDS).map(unit_float);
+            let (sin, cos) = (std::f32::consts::TAU * v).sin_cos();
+            let y = 1.0 - 2.0 * u;
+            let r = (1.0 - y * y).sqrt();
+            Vec3::new(r * cos, y, r * sin)
+        })
+        .collect();
+    let free = free_ways(trace, middle, &directions);
+    // Near blockers mean that the middle lies within an object, not within a room.
+    let clearance = 0.05 * extent.max_element();
+    let around = free.iter().filter(|t| t.is_finite() && **t > clearance).count();
+    if (around as f32) < INTERIOR_SHARE * DIRECTIONS as f32 {
+        return None;
+    }
+    let along = if extent.x >= extent.z { Vec3::X } else { Vec3::Z };
+    let ends = free_ways(trace, middle, &[along, -along, Vec3::NEG_Y]);
+    let side = if ends[0] >= ends[1] { along } else { -along };
+    let away = ends[0].max(ends[1]).min(extent.max_element());
+    // A third of the way up from the floor to the middle: about eye height in a room of two storeys.
+    let eye = middle + 0.8 * away * side - Vec3::Y * (2.0 / 3.0 * ends[2].min(extent.y));
+    let target = middle - side * away - Vec3::Y * (0.5 * ends[2].min(extent.y));
+    let clear = free_ways(trace, eye, &directions).into_iter().fold(f32::INFINITY, f32::min);
+    // A blocked end, such as a column in the way, leaves the middle itself.
+    Some(if clear > 0.02 * extent.max_element() { (eye, target) } else { (middle, middle - side) })
+}
+
+/// Distance to the first hit from `origin` along each of the unit `directions`.
+fn free_ways(trace: &impl Trace, origin: Vec3, directions: &[Vec3]) -> Vec<f32> {
+    let ray = |&direction: &Vec3| Ray { origin, t_max: f32::INFINITY, direction, seed: 0 };
+    let rays: Vec<Ray> = directions.iter().map(ray).collect();
+    let mut hits = vec![Hit::MISS; rays.len()];
+    trace.closest_hits(&rays, &mut hits);
+    hits.iter().map(|hit| hit.t).collect()
+}

@@ -1,0 +1,124 @@
+//! From settings to a view: the only place where `auto` gets its meaning.
+
+use ambray_core::{
+    camera::{Camera, Projection},
+    light::Light,
+    openness::Openness,
+    settings::{Auto, Falloff, Rgb, Settings, Triple},
+    trace::Trace,
+    view::View,
+};
+use ambray_scene::{Scene, SceneCamera};
+use glam::Vec3;
+
+use crate::{RenderError, framing};
+
+/// Irradiance of the additional sun where only its direction is set.
+const SUN_STRENGTH: f32 = 3.0;
+/// Direction towards the additional sun where only its strength is set.
+const SUN_DIRECTION: Vec3 = Vec3::new(0.4, 1.0, 0.3);
+/// σ·R of the exponential falloffs where no rate is set: μ(R) = 0.95 (spec §13).
+const SIGMA_RADIUS: f32 = 3.0;
+/// Vertical angle of view where no camera says otherwise, degrees.
+const VERTICAL_FOV: f32 = 50.0;
+
+pub(crate) fn view(settings: &Settings, scene: &Scene, trace: &impl Trace) -> Result<View, RenderError> {
+    let radius = settings.radius.value().copied().or(scene.radius).unwrap_or_else(|| framing::radius(scene));
+    let openness = openness(settings, radius);
+    let rgb = |color: &Auto<Rgb>| color.value().map(|&color| Vec3::from(color));
+    let ambient = rgb(&settings.ambient).or(scene.ambient).unwrap_or(Vec3::ONE);
+    let (camera, camera_origin) = camera(settings, scene, trace)?;
+    Ok(View {
+        camera,
+        camera_origin,
+        radius,
+        openness,
+        near_limit: settings.near_limit.unwrap_or(openness.reach()),
+        ambient,
+        background: rgb(&settings.background).unwrap_or(ambient),
+        lights: lights(settings, scene),
+    })
+}
+
+fn openness(settings: &Settings, radius: f32) -> Openness {
+    let sigma = settings.sigma.unwrap_or(SIGMA_RADIUS / radius);
+    match settings.falloff {
+        Falloff::Power => Openness::Power { radius, exponent: settings.exponent },
+        Falloff::Exponential => Openness::Exponential { sigma },
+        Falloff::ExponentialTruncated => Openness::ExponentialTruncated { radius, sigma },
+        Falloff::Step => Openness::Step { radius },
+    }
+}
+
+fn lights(settings: &Settings, scene: &Scene) -> Vec<Light> {
+    let mut lights = if settings.lights { scene.lights.clone() } else { Vec::new() };
+    let direction = settings.sun_direction.value().map(|&direction| Vec3::from(direction));
+    let strength = settings.sun_strength.unwrap_or(if direction.is_some() { SUN_STRENGTH } else { 0.0 });
+    if strength > 0.0 {
+        let to_light = direction.unwrap_or(SUN_DIRECTION).normalize();
+        lights.push(Light::Directional { to_light, irradiance: Vec3::from(settings.sun_color) * strength });
+    }
+    lights
+}
+
+/// The camera that the settings ask for, and where it came from.
+///
+/// A position or a target alone changes the camera of the file; without any camera the scene is framed.
+fn camera(settings: &Settings, scene: &Scene, trace: &impl Trace) -> Result<(Camera, String), RenderError> {
+    let (width, height) = (settings.size.width, settings.size.height);
+    let vec3 = |value: &Auto<Triple>| value.value().map(|&value| Vec3::from(value));
+    let (position, target) = (vec3(&settings.camera_position), vec3(&settings.camera_target));
+    let (base, mut origin) = match chosen_camera(&settings.camera, scene)? {
+        Some((number, camera)) => {
+            let name = if camera.name.is_empty() { number.to_string() } else { camera.name.clone() };
+            (camera.clone(), format!("camera {name} of the scene"))
+        }
+        None => {
+            let fov = settings.vertical_fov.unwrap_or(VERTICAL_FOV).to_radians();
+            let (camera, how) = framing::camera(scene, trace, fov, width as f32 / height as f32);
+            (camera, how.to_owned())
+        }
+    };
+    if position.is_some() || target.is_some() {
+        origin = if position.is_some() && target.is_some() { "given" } else { "partly given" }.to_owned();
+    }
+    let eye = position.unwrap_or(base.position);
+    let forward = match target {
+        Some(target) => (target - eye).try_normalize().ok_or_else(|| {
+            RenderError::Camera("camera-target is the position of the camera: they must differ".to_owned())
+        })?,
+        None => base.forward,
+    };
+    let up = match vec3(&settings.camera_up) {
+        Some(up) => up.normalize(),
+        None if target.is_some() => Vec3::Y,
+        None => base.up,
+    };
+    let projection = match (settings.orthographic_height.value(), settings.vertical_fov.value()) {
+        (Some(&height), _) => Projection::Orthographic { height },
+        (None, Some(fov)) => Projection::Perspective { vertical_fov: fov.to_radians() },
+        (None, None) => base.projection,
+    };
+    Ok((Camera::new(eye, forward, up, projection, width, height), origin))
+}
+
+/// The camera of the file with the given name or number; the first one for `auto`.
+fn chosen_camera<'a>(
+    choice: &Auto<String>,
+    scene: &'a Scene,
+) -> Result<Option<(usize, &'a SceneCamera)>, RenderError> {
+    let mut cameras = scene.cameras.iter().enumerate();
+    let Some(name) = choice.value() else { return Ok(cameras.next()) };
+    let by_name = cameras.clone().find(|(_, camera)| camera.name == *name);
+    let by_number = || cameras.nth(name.parse().ok()?);
+    by_name.or_else(by_number).map(Some).ok_or_else(|| RenderError::UnknownCamera {
+        name: name.clone(),
+        known: match scene.cameras.as_slice() {
+            [] => "it has none".to_owned(),
+            cameras => {
+                let names = cameras.iter().enumerate().map(|(i, camera)| format!("{i} ({})", camera.name));
+                format!("it has {}", names.collect::<Vec<_>>().join(", "))
+            }
+        },
+    })
+}
