@@ -1,12 +1,24 @@
 //! Scenes: what is there to be lit.
 #![forbid(unsafe_code)]
 
+mod decode;
+mod error;
+mod files;
+mod gltf;
+pub mod limits;
+mod load;
 pub mod material;
 pub mod mesh;
+mod obj;
+mod repair;
 pub mod scene;
 pub mod surface;
+mod tangents;
 pub mod texture;
+mod warnings;
 
+pub use error::LoadError;
+pub use load::{LoadOptions, Loaded, SceneChoice, load, load_with};
 pub use material::{AlphaMode, Material, TextureRef};
 pub use mesh::Mesh;
 pub use scene::{Instance, Scene, SceneCamera};

@@ -1,0 +1,291 @@
+//! Puts the parts together: nodes in scene order become instances, cameras and lights.
+
+use std::collections::{BTreeMap, HashMap};
+
+use glam::{Affine3A, DAffine3, DQuat, DVec3, Vec3};
+
+use crate::error::{Fault, Outcome};
+use crate::repair::repair;
+use crate::warnings::Warnings;
+use crate::{Instance, Material, Mesh, Scene, limits, tangents};
+
+use super::accessor::Accept;
+use super::document::Document;
+use super::json::{Index, Node, Root};
+use super::nodes::placement;
+use super::pose::{Deformable, joint_matrices};
+use super::primitives::read_primitive;
+use super::views;
+
+/// Adds what the `visible` nodes show to `scene`, which has its materials already.
+pub(super) fn assemble(
+    doc: &Document<'_>,
+    visible: &[Index],
+    world: &[DAffine3],
+    scene: &mut Scene,
+    warnings: &mut Warnings,
+) -> Outcome<()> {
+    let mut assembly = Assembly { doc, world, scene, warnings, read: HashMap::new(), triangles: 0 };
+    for &index in visible {
+        let node = &doc.root.nodes[index];
+        if let Some(mesh) = node.mesh {
+            assembly.place_mesh(node, index, mesh)?;
+        }
+        assembly.place_views(node, index)?;
+    }
+    Ok(())
+}
+
+/// A primitive that has been read.
+struct Shape {
+    deformable: Deformable,
+    /// Scene mesh of the rest shape once it is needed.
+    shared: Option<u32>,
+}
+
+struct Assembly<'a, 'd> {
+    doc: &'a Document<'d>,
+    world: &'a [DAffine3],
+    scene: &'a mut Scene,
+    warnings: &'a mut Warnings,
+    /// Primitives by glTF mesh.
+    read: HashMap<Index, Vec<Shape>>,
+    /// Triangles placed so far, instances counted each time.
+    triangles: u64,
+}
+
+impl Assembly<'_, '_> {
+    fn place_mesh(&mut self, node: &Node, index: Index, mesh: Index) -> Outcome<()> {
+        let mut shapes = match self.read.remove(&mesh) {
+            Some(shapes) => shapes,
+            None => self.read_mesh(mesh)?,
+        };
+        let result = self.place_shapes(node, index, mesh, &mut shapes);
+        self.read.insert(mesh, shapes);
+        result
+    }
+
+    fn place_shapes(&mut self, node: &Node, index: Index, mesh: Index, shapes: &mut [Shape]) -> Outcome<()> {
+        let at = format!("nodes[{index}]");
+        let weights = morph_weights(self.doc.root, node, mesh, shapes, &at)?;
+        let joints = match node.skin {
+            Some(skin) => Some(joint_matrices(self.doc, skin, self.world, &format!("{at}.skin"))?),
+            None => None,
+        };
+        let placements = self.placements(node, index)?;
+        for (i, shape) in shapes.iter_mut().enumerate() {
+            if shape.deformable.is_deformed_by(weights, joints.is_some()) {
+                let place = format!("meshes[{mesh}].primitives[{i}]");
+                let posed = self.pose(&shape.deformable, weights, joints.as_deref(), &place)?;
+                // Joints place their mesh in the world; the node's own transform does not count (glTF 2.0 §3.7.3.3).
+                let skinned = joints.is_some() && !shape.deformable.influences.is_empty();
+                let mesh = self.add_mesh(posed)?;
+                self.add_instances(mesh, if skinned { &[Affine3A::IDENTITY] } else { &placements }, &at)?;
+            } else {
+                let mesh = match shape.shared {
+                    Some(mesh) => mesh,
+                    None => self.share(shape)?,
+                };
+                self.add_instances(mesh, &placements, &at)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn read_mesh(&mut self, mesh: Index) -> Outcome<Vec<Shape>> {
+        let mut shapes = Vec::new();
+        for (i, primitive) in self.doc.root.meshes[mesh].primitives.iter().enumerate() {
+            if let Some(mut deformable) = read_primitive(self.doc, mesh, i, self.warnings)? {
+                deformable.rest.material = match primitive.material {
+                    Some(material) => material as u32, // checked to be below the number of materials
+                    None => default_material(self.scene, self.doc.root.materials.len()),
+                };
+                shapes.push(Shape { deformable, shared: None });
+            }
+        }
+        Ok(shapes)
+    }
+
+    fn pose(
+        &self,
+        deformable: &Deformable,
+        weights: &[f32],
+        joints: Option<&[Affine3A]>,
+        at: &str,
+    ) -> Outcome<Mesh> {
+        if let Some(joints) = joints {
+            let out = deformable.influences.iter().find(|influence| influence.joint as usize >= joints.len());
+            if let Some(influence) = out {
+                let reason = format!("joint {} of a skin with {}", influence.joint, joints.len());
+                return Err(Fault::invalid(format!("{at}.attributes.JOINTS_0"), reason));
+            }
+        }
+        let rest = &deformable.rest;
+        self.doc.reserve((64 * rest.positions.len() + 12 * rest.triangles.len()) as u64, at)?;
+        Ok(deformable.pose(weights, joints))
+    }
+
+    /// Adds the rest shape to the scene, for all nodes that show it as it is.
+    fn share(&mut self, shape: &mut Shape) -> Outcome<u32> {
+        let keep = !shape.deformable.targets.is_empty() || !shape.deformable.influences.is_empty();
+        let rest = &mut shape.deformable.rest;
+        let mesh = self.add_mesh(if keep { rest.clone() } else { std::mem::take(rest) })?;
+        shape.shared = Some(mesh);
+        Ok(mesh)
+    }
+
+    fn add_mesh(&mut self, mut mesh: Mesh) -> Outcome<u32> {
+        repair(&mut mesh, self.warnings);
+        let material = &self.scene.materials[mesh.material as usize];
+        if let Some(texture) = &material.normal_texture {
+            tangents::generate(&mut mesh, texture.uv_set);
+        }
+        let refs = [&material.base_color_texture, &material.normal_texture, &material.emission_texture];
+        let lacks_uvs = refs.into_iter().flatten().any(|texture| texture.uv_set as usize >= mesh.uvs.len());
+        self.warnings
+            .tally("primitives lack the texture coordinates that their material asks for", lacks_uvs.into());
+        self.scene.meshes.push(mesh);
+        Ok((self.scene.meshes.len() - 1) as u32)
+    }
+
+    fn add_instances(&mut self, mesh: u32, placements: &[Affine3A], at: &str) -> Outcome<()> {
+        let shape = &self.scene.meshes[mesh as usize];
+        let count = placements.len() as u64;
+        self.triangles = self.triangles.saturating_add(count.saturating_mul(shape.triangles.len() as u64));
+        if self.triangles > limits::TRIANGLES {
+            let reason = format!("more than {} triangles, instances counted each time", limits::TRIANGLES);
+            return Err(Fault::too_large(at, reason));
+        }
+        if self.scene.instances.len() as u64 + count > limits::INSTANCES {
+            return Err(Fault::too_large(at, format!("more than {} instances", limits::INSTANCES)));
+        }
+        let Some(corners) = corners(shape) else { return Ok(()) };
+        let before = self.scene.instances.len();
+        let finite = |m: &&Affine3A| corners.iter().all(|&corner| m.transform_point3(corner).is_finite());
+        let placed = placements.iter().filter(finite);
+        self.scene.instances.extend(placed.map(|&world_from_object| Instance { mesh, world_from_object }));
+        let dropped = count - (self.scene.instances.len() - before) as u64;
+        self.warnings.tally("instances beyond the range of numbers are dropped", dropped);
+        Ok(())
+    }
+
+    /// Where a node puts its mesh: once, or as often as EXT_mesh_gpu_instancing says.
+    fn placements(&mut self, node: &Node, index: Index) -> Outcome<Vec<Affine3A>> {
+        let world = self.world[index];
+        let transforms = match &node.extensions.instancing {
+            Some(instancing) => {
+                let at = format!("nodes[{index}].extensions.EXT_mesh_gpu_instancing.attributes");
+                instance_transforms(self.doc, &instancing.attributes, &at)?
+            }
+            None => vec![DAffine3::IDENTITY],
+        };
+        let placed: Vec<Affine3A> = transforms.iter().filter_map(|&local| placement(world * local)).collect();
+        let dropped = (transforms.len() - placed.len()) as u64;
+        self.warnings.tally("instances whose transform is singular or not finite are dropped", dropped);
+        Ok(placed)
+    }
+
+    fn place_views(&mut self, node: &Node, index: Index) -> Outcome<()> {
+        let root = self.doc.root;
+        if let Some(camera) = node.camera {
+            let at = format!("cameras[{camera}]");
+            match views::camera(&root.cameras[camera], node.name.as_deref(), self.world[index], &at)? {
+                Some(camera) => self.scene.cameras.push(camera),
+                None => self.warnings.tally("cameras without a direction are dropped", 1),
+            }
+        }
+        if let (Some(light), Some(lights)) = (&node.extensions.light, &root.extensions.lights) {
+            let at = format!("extensions.KHR_lights_punctual.lights[{}]", light.light);
+            match views::light(&lights.lights[light.light], self.world[index], &at)? {
+                Some(light) => self.scene.lights.push(light),
+                None => self.warnings.tally("lights without a direction are dropped", 1),
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The material of primitives that name none, appended when first needed to the `count` of the file.
+fn default_material(scene: &mut Scene, count: usize) -> u32 {
+    if scene.materials.len() == count {
+        scene.materials.push(Material::default());
+    }
+    count as u32
+}
+
+/// Morph weights of a node: its own, or else the mesh's.
+fn morph_weights<'r>(
+    root: &'r Root,
+    node: &'r Node,
+    mesh: Index,
+    shapes: &[Shape],
+    at: &str,
+) -> Outcome<&'r [f32]> {
+    let own = !node.weights.is_empty();
+    let weights = if own { &node.weights } else { &root.meshes[mesh].weights };
+    let at = || if own { format!("{at}.weights") } else { format!("meshes[{mesh}].weights") };
+    for shape in shapes {
+        let targets = shape.deformable.targets.len();
+        if !weights.is_empty() && weights.len() != targets {
+            return Err(Fault::invalid(
+                at(),
+                format!("{} weights for {targets} morph targets", weights.len()),
+            ));
+        }
+    }
+    if weights.iter().all(|weight| weight.is_finite()) {
+        Ok(weights)
+    } else {
+        Err(Fault::invalid(at(), "weight beyond the range of numbers"))
+    }
+}
+
+/// Local transforms of EXT_mesh_gpu_instancing.
+fn instance_transforms(
+    doc: &Document<'_>,
+    attributes: &BTreeMap<String, Index>,
+    at: &str,
+) -> Outcome<Vec<DAffine3>> {
+    let mut count = None;
+    for (name, &accessor) in attributes {
+        let this = doc.count(accessor, at)?;
+        if *count.get_or_insert(this) != this {
+            return Err(Fault::invalid(format!("{at}.{name}"), "attributes differ in their count"));
+        }
+    }
+    let count = count.ok_or_else(|| Fault::invalid(at, "instancing without attributes"))?;
+    if count > limits::INSTANCES {
+        return Err(Fault::too_large(at, format!("{count} instances, the limit is {}", limits::INSTANCES)));
+    }
+    let vec3 = |name: &str| match attributes.get(name) {
+        Some(&accessor) => doc.read::<3>(accessor, Accept::Float, &format!("{at}.{name}")),
+        None => Ok(Vec::new()),
+    };
+    let (translations, scales) = (vec3("TRANSLATION")?, vec3("SCALE")?);
+    let rotations = match attributes.get("ROTATION") {
+        Some(&accessor) => doc.read::<4>(accessor, Accept::FloatOrNormalized, &format!("{at}.ROTATION"))?,
+        None => Vec::new(),
+    };
+    let transform = |i: usize| {
+        let translation = translations.get(i).map_or(DVec3::ZERO, |t| DVec3::from(t.map(f64::from)));
+        let scale = scales.get(i).map_or(DVec3::ONE, |s| DVec3::from(s.map(f64::from)));
+        // A quaternion of length zero becomes NaN, and the instance is dropped with the other singular ones.
+        let rotation = rotations.get(i).map_or(DQuat::IDENTITY, |q| {
+            let q = DQuat::from_array(q.map(f64::from));
+            q * (1.0 / q.length())
+        });
+        DAffine3::from_scale_rotation_translation(scale, rotation, translation)
+    };
+    Ok((0..count as usize).map(transform).collect())
+}
+
+/// Corners of the box around the vertices in use; `None` without triangles.
+fn corners(mesh: &Mesh) -> Option<[Vec3; 8]> {
+    let mut points = mesh.triangles.iter().flatten().map(|&i| mesh.positions[i as usize]);
+    let first = points.next()?;
+    let (lo, hi) = points.fold((first, first), |(lo, hi), p| (lo.min(p), hi.max(p)));
+    let pick = |i: usize, bit: usize, lo: f32, hi: f32| if i >> bit & 1 == 0 { lo } else { hi };
+    Some(std::array::from_fn(|i| {
+        Vec3::new(pick(i, 0, lo.x, hi.x), pick(i, 1, lo.y, hi.y), pick(i, 2, lo.z, hi.z))
+    }))
+}

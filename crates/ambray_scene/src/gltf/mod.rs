@@ -1,0 +1,70 @@
+//! glTF 2.0 import.
+//!
+//! | Part of the format | What happens |
+//! |---|---|
+//! | `.gltf`, `.glb`, data URIs, files beside the scene | read; other URI schemes and paths that leave the folder are refused |
+//! | scenes | the chosen one, or the default one, or the first; without any, all root nodes |
+//! | nodes, matrix and TRS | read; cycles and nodes with two parents are refused; singular ones drop their instance with a warning |
+//! | triangle lists, strips, fans | read; every primitive is a [`Mesh`](crate::Mesh) |
+//! | points, lines | skipped with one warning |
+//! | accessors: all index types, sparse, interleaved, normalised, quantised | read, every byte bounds-checked |
+//! | POSITION, NORMAL, TANGENT, TEXCOORD_n, COLOR_0 | read; missing normals mean flat shading; missing tangents are generated where a normal map needs them |
+//! | other attributes | ignored |
+//! | morph targets, skins | applied as they are at rest: default weights, joints where the nodes are |
+//! | animations | ignored with a warning |
+//! | materials: base colour, normal, emission, alpha mode, doubleSided | read |
+//! | materials: metalness, roughness, occlusion texture | ignored |
+//! | images: PNG, JPEG, WebP | read if a material uses them |
+//! | cameras | read |
+//! | KHR_lights_punctual, KHR_materials_emissive_strength, KHR_materials_unlit, KHR_mesh_quantization, KHR_texture_transform, EXT_mesh_gpu_instancing, EXT_texture_webp | read |
+//! | KHR_materials_pbrSpecularGlossiness | its diffuse colour is the base colour |
+//! | other KHR_materials_*, KHR_xmp_json_ld | ignored with a warning, even if required |
+//! | EXT_meshopt_compression, KHR_draco_mesh_compression, KHR_texture_basisu | the uncompressed fallback is read; refused without one |
+//! | other extensions | ignored with a warning; refused if required |
+
+mod accessor;
+mod assemble;
+mod container;
+mod document;
+mod extensions;
+mod json;
+mod materials;
+mod nodes;
+mod pose;
+mod primitives;
+mod textures;
+mod validate;
+mod views;
+
+pub(crate) use container::is_glb;
+
+use crate::Scene;
+use crate::error::Outcome;
+use crate::files::Folder;
+use crate::load::LoadOptions;
+use crate::warnings::Warnings;
+
+/// Reads the scene in `bytes`; `expect_glb` says what the file's name promises.
+pub(crate) fn load(
+    bytes: &[u8],
+    expect_glb: bool,
+    folder: &mut Folder,
+    options: &LoadOptions,
+    warnings: &mut Warnings,
+) -> Outcome<Scene> {
+    let container::Parts { root, binary } = container::parse(bytes, expect_glb)?;
+    validate::check_version(&root)?;
+    extensions::check(&root, warnings)?;
+    validate::validate(&root)?;
+    let world = nodes::world_transforms(&root)?;
+    let visible = nodes::visible(&root, options.scene.as_ref())?;
+    let doc = document::Document::open(&root, binary, folder)?;
+
+    let mut scene = Scene::default();
+    let mut used = textures::TextureUses::default();
+    scene.materials = materials::read_materials(&root, &mut used)?;
+    assemble::assemble(&doc, &visible, &world, &mut scene, warnings)?;
+    (scene.textures, scene.images) = used.load(&doc, folder)?;
+    warnings.tally("animations are ignored, the scene is shown at rest", root.animations.len() as u64);
+    Ok(scene)
+}

@@ -1,0 +1,108 @@
+//! Cameras and lights, placed by their nodes.
+
+use ambray_core::camera::Projection;
+use ambray_core::light::{Cone, Light};
+use glam::{DAffine3, DVec3, Vec3};
+
+use crate::SceneCamera;
+use crate::error::{Fault, Outcome, quoted};
+
+use super::json;
+
+/// The camera at `world`; `None` where that leaves it without a direction.
+pub(super) fn camera(
+    json: &json::Camera,
+    node_name: Option<&str>,
+    world: DAffine3,
+    at: &str,
+) -> Outcome<Option<SceneCamera>> {
+    let projection = projection(json, at)?;
+    let (forward, up) = (direction(world, DVec3::NEG_Z), direction(world, DVec3::Y));
+    let (Some(forward), Some(up), true) = (forward, up, world.translation.as_vec3().is_finite()) else {
+        return Ok(None);
+    };
+    // Sheared nodes tilt one axis against the other.
+    let up = up
+        .reject_from_normalized(forward)
+        .try_normalize()
+        .unwrap_or_else(|| forward.any_orthonormal_vector());
+    let name = json.name.as_deref().or(node_name).unwrap_or_default().to_owned();
+    Ok(Some(SceneCamera { name, position: world.translation.as_vec3(), forward, up, projection }))
+}
+
+/// Checks and converts the camera's own numbers.
+pub(super) fn projection(json: &json::Camera, at: &str) -> Outcome<Projection> {
+    match (json.kind.as_str(), &json.perspective, &json.orthographic) {
+        ("perspective", Some(perspective), _) => {
+            let vertical_fov = perspective.yfov;
+            if !(vertical_fov > 0.0 && vertical_fov < std::f32::consts::PI) {
+                let reason = format!("{vertical_fov} is not between 0 and π");
+                return Err(Fault::invalid(format!("{at}.perspective.yfov"), reason));
+            }
+            Ok(Projection::Perspective { vertical_fov })
+        }
+        ("orthographic", _, Some(orthographic)) => {
+            let (x, y) = (orthographic.xmag, orthographic.ymag);
+            // Negative magnifications are discouraged, not forbidden; they would mirror the picture.
+            let height = 2.0 * y.abs();
+            if x == 0.0 || y == 0.0 || !x.is_finite() || !height.is_finite() {
+                return Err(Fault::invalid(format!("{at}.orthographic"), format!("magnification {x} × {y}")));
+            }
+            Ok(Projection::Orthographic { height })
+        }
+        ("perspective" | "orthographic", ..) => {
+            Err(Fault::invalid(at, format!("camera of type {} without its numbers", quoted(&json.kind))))
+        }
+        (other, ..) => Err(Fault::invalid(format!("{at}.type"), format!("no such type: {}", quoted(other)))),
+    }
+}
+
+/// The light at `world`; `None` where that leaves it without a direction.
+pub(super) fn light(json: &json::Light, world: DAffine3, at: &str) -> Outcome<Option<Light>> {
+    let power = Vec3::from(json.color.unwrap_or([1.0; 3])) * json.intensity.unwrap_or(1.0);
+    if !power.is_finite() || power.min_element() < 0.0 {
+        return Err(Fault::invalid(at, "colour times intensity is negative or beyond the range of numbers"));
+    }
+    let cone = match json.kind.as_str() {
+        "directional" => {
+            let to_light = direction(world, DVec3::Z);
+            return Ok(to_light.map(|to_light| Light::Directional { to_light, irradiance: power }));
+        }
+        "point" => None,
+        "spot" => match (cone_angles(json, at)?, direction(world, DVec3::NEG_Z)) {
+            ((inner, outer), Some(axis)) => {
+                Some(Cone { axis, cos_inner: inner.cos(), cos_outer: outer.cos() })
+            }
+            (_, None) => return Ok(None),
+        },
+        other => {
+            return Err(Fault::invalid(format!("{at}.type"), format!("no such type: {}", quoted(other))));
+        }
+    };
+    let range = json.range.unwrap_or(f32::INFINITY);
+    if range.is_nan() || range <= 0.0 {
+        return Err(Fault::invalid(format!("{at}.range"), format!("{range} is not positive")));
+    }
+    let position = world.translation.as_vec3();
+    Ok(position.is_finite().then_some(Light::Point { position, intensity: power, range, cone }))
+}
+
+/// Inner and outer half-angle of a spot light in radians.
+fn cone_angles(json: &json::Light, at: &str) -> Outcome<(f32, f32)> {
+    let Some(spot) = &json.spot else {
+        return Err(Fault::invalid(format!("{at}.spot"), "spot light without a cone"));
+    };
+    let inner = spot.inner_cone_angle.unwrap_or(0.0);
+    let outer = spot.outer_cone_angle.unwrap_or(std::f32::consts::FRAC_PI_4);
+    // The single-precision π/2 lies above the true one; files hold either.
+    if !(0.0 <= inner && inner < outer && outer <= std::f32::consts::FRAC_PI_2 + 1e-6) {
+        let reason = format!("angles {inner} and {outer} are not 0 ≤ inner < outer ≤ π/2");
+        return Err(Fault::invalid(format!("{at}.spot"), reason));
+    }
+    Ok((inner, outer))
+}
+
+/// Unit image of `axis`, if it has a direction.
+fn direction(world: DAffine3, axis: DVec3) -> Option<Vec3> {
+    world.transform_vector3(axis).try_normalize().map(|direction| direction.as_vec3())
+}
