@@ -31,3 +31,21 @@ impl<A: AlphaTest + ?Sized> AlphaTest for &A {
         (**self).accepts(instance, triangle, u, v, seed)
     }
 }
+
+impl<A: AlphaTest + Send> AlphaTest for std::sync::Arc<A> {
+    fn is_opaque(&self, mesh: u32) -> bool {
+        (**self).is_opaque(mesh)
+    }
+    fn accepts(&self, instance: u32, triangle: u32, u: f32, v: f32, seed: u32) -> bool {
+        (**self).accepts(instance, triangle, u, v, seed)
+    }
+}
+
+impl AlphaTest for ambray_scene::surface::Surfaces {
+    fn is_opaque(&self, mesh: u32) -> bool {
+        self.is_opaque(mesh)
+    }
+    fn accepts(&self, instance: u32, triangle: u32, u: f32, v: f32, seed: u32) -> bool {
+        self.accepts(instance, triangle, u, v, seed)
+    }
+}
