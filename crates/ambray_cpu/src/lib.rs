@@ -4,6 +4,7 @@
 //! the same bits for every tree, width, instruction set and batch; [`Stats`] tell what was built.
 
 mod alpha;
+mod backend;
 mod bvh;
 mod isa;
 mod kernel;
@@ -12,6 +13,7 @@ mod stats;
 mod tracer;
 
 pub use alpha::{AlphaTest, Opaque};
+pub use backend::{BackendError, CpuBackend, CpuWorld};
 pub use isa::Isa;
 pub use options::{BuildOptions, Quality, Width};
 pub use stats::Stats;
