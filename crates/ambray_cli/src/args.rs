@@ -1,0 +1,374 @@
+//! The command line as it was typed: parsed and checked for form, without side effects.
+
+use std::{ffi::OsString, path::PathBuf, str::FromStr};
+
+use ambray::{
+    Aov,
+    settings::{Preset, Settings, SettingsPatch},
+};
+use clap::{
+    Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum,
+    builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
+};
+
+const EXAMPLES: &str = "\
+Examples:
+  ambray                                       render the built-in atrium to ambray.png
+  ambray render scene.glb -o picture.png       render a file
+  ambray render scene.glb --preset draft --size 640x360
+  ambray render scene.glb -o layers.exr --aov openness,depth,albedo
+  ambray render atrium --camera-position 0,1.6,-3 --camera-target 0,1.5,0
+  ambray query scene.glb --points points.csv -o openness.csv
+  ambray bench --frames 200 --json
+  ambray info scene.glb
+
+Exit codes: 0 done, 2 error, 130 interrupted.";
+
+const PRECEDENCE: &str = "\
+Which setting counts: a flag beats the settings file, which beats the preset, which beats the default. \
+A --preset flag replaces the preset named in the settings file, but not the settings written out there.";
+
+/// Ambient lighting by ray tracing: openness, colour bleeding and pictures.
+///
+/// Without a command, the built-in scene is rendered to ambray.png in the current folder.
+#[derive(Debug, Parser)]
+#[command(name = "ambray", version, max_term_width = 100, after_long_help = EXAMPLES)]
+pub struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Render a scene to a picture
+    #[command(after_long_help = PRECEDENCE)]
+    Render(Box<RenderArgs>),
+    /// Evaluate ambient light at points of a list instead of pixels
+    #[command(after_long_help = PRECEDENCE)]
+    Query(Box<QueryArgs>),
+    /// Measure the time of whole frames
+    #[command(after_long_help = PRECEDENCE)]
+    Bench(Box<BenchArgs>),
+    /// Say what is in a scene; without one, about the program and the machine
+    Info(InfoArgs),
+    /// Print a script that completes ambray's options in a shell
+    Completions(CompletionsArgs),
+    /// Print the manual page (roff)
+    #[command(hide = true)]
+    Man,
+}
+
+/// Which scene to load.
+#[derive(Clone, Debug, Args)]
+pub struct SceneArgs {
+    /// Scene: a .gltf, .glb or .obj file, or the word atrium for the built-in scene (a file of that name: ./atrium)
+    #[arg(value_name = "SCENE", default_value = "atrium")]
+    pub scene: PathBuf,
+    /// Scene of a glTF file by number from 0 or by name [default: the one that the file names, else the first]
+    #[arg(long, value_name = "NAME_OR_INDEX")]
+    pub gltf_scene: Option<String>,
+}
+
+/// Where settings come from.
+#[derive(Clone, Debug, Default, Args)]
+pub struct SettingsArgs {
+    /// Starting point for quality and speed; a settings file and flags have the last word [default: realtime]
+    #[arg(long, value_enum, value_name = "PRESET", help_heading = "Settings")]
+    pub preset: Option<Preset>,
+    /// Read settings from a TOML file, or from a PNG picture that ambray wrote
+    #[arg(long, value_name = "FILE", help_heading = "Settings")]
+    pub settings: Option<PathBuf>,
+    /// Write all settings in use to a TOML file, from which --settings makes the same picture again
+    #[arg(long, value_name = "FILE.toml", help_heading = "Settings")]
+    pub save_settings: Option<PathBuf>,
+    /// Settings given as flags.
+    #[command(flatten)]
+    pub flags: SettingsPatch,
+}
+
+/// How to run.
+#[derive(Clone, Copy, Debug, Args)]
+pub struct RunArgs {
+    /// Number of threads, 0 for all cores; the result does not depend on it
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
+    pub threads: u16,
+    /// No progress bar and no report; warnings and errors are still shown on stderr
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// Arguments of `ambray render`.
+#[derive(Clone, Debug, Args)]
+pub struct RenderArgs {
+    /// The scene.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Picture to write, .png or .exr; - is stdout [default: ambray.png, or ambray.exr with --format exr]
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+    /// File format [default: by the extension of OUT; png8 for .png]
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub format: Option<Format>,
+    /// More planes to write besides the picture, separated by commas: layers of the same file in OpenEXR, files
+    /// OUT-stem.PLANE.png in PNG
+    #[arg(long, value_name = "PLANES", value_delimiter = ',', value_parser = planes())]
+    pub aov: Vec<Planes>,
+    /// Print the report as one JSON object on stdout
+    #[arg(long)]
+    pub json: bool,
+    /// How to run.
+    #[command(flatten)]
+    pub run: RunArgs,
+    /// Settings.
+    #[command(flatten)]
+    pub settings: SettingsArgs,
+}
+
+/// Arguments of `ambray query`.
+#[derive(Clone, Debug, Args)]
+pub struct QueryArgs {
+    /// The scene.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Points in the scene: CSV columns x,y,z,nx,ny,nz and optionally class (0 to 15), with or without a header, or JSON
+    /// lines {"position": [x,y,z], "normal": [x,y,z], "class": 0}; - is stdin
+    #[arg(long, value_name = "FILE")]
+    pub points: PathBuf,
+    /// Format of the points [default: JSON lines if the first character is {, else CSV]
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub points_format: Option<PointsFormat>,
+    /// File for the results; - is stdout [default: -]
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+    /// Results as JSON lines instead of CSV
+    #[arg(long)]
+    pub json: bool,
+    /// How to run.
+    #[command(flatten)]
+    pub run: RunArgs,
+    /// Settings.
+    #[command(flatten)]
+    pub settings: SettingsArgs,
+}
+
+/// Arguments of `ambray bench`.
+#[derive(Clone, Debug, Args)]
+pub struct BenchArgs {
+    /// Scenes: .gltf, .glb or .obj files, or the word atrium for the built-in scene
+    #[arg(value_name = "SCENE", default_value = "atrium")]
+    pub scenes: Vec<PathBuf>,
+    /// Scene of each glTF file by number from 0 or by name [default: the one that the file names, else the first]
+    #[arg(long, value_name = "NAME_OR_INDEX")]
+    pub gltf_scene: Option<String>,
+    /// Frames to measure per scene, at least
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub frames: u32,
+    /// Seconds to measure per scene, at least: frames go on until both --frames and --seconds are reached
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, value_parser = seconds)]
+    pub seconds: f64,
+    /// Frames to render before, which do not count
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
+    pub warmup: u32,
+    /// Print the result as one JSON object on stdout
+    #[arg(long)]
+    pub json: bool,
+    /// Write the result as JSON to a file as well
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// How to run.
+    #[command(flatten)]
+    pub run: RunArgs,
+    /// Settings.
+    #[command(flatten)]
+    pub settings: SettingsArgs,
+}
+
+/// Arguments of `ambray info`.
+#[derive(Clone, Debug, Args)]
+pub struct InfoArgs {
+    /// Scene: a .gltf, .glb or .obj file, or the word atrium for the built-in scene; none tells about the program
+    #[arg(value_name = "SCENE")]
+    pub scene: Option<PathBuf>,
+    /// Scene of a glTF file by number from 0 or by name [default: the one that the file names, else the first]
+    #[arg(long, value_name = "NAME_OR_INDEX")]
+    pub gltf_scene: Option<String>,
+    /// Print one JSON object on stdout
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `ambray completions`.
+#[derive(Clone, Copy, Debug, Args)]
+pub struct CompletionsArgs {
+    /// Shell to write for
+    #[arg(value_enum, value_name = "SHELL")]
+    pub shell: clap_complete::Shell,
+}
+
+/// Format of a picture file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// PNG with 8 bits a channel, tone-mapped
+    Png8,
+    /// PNG with 16 bits a channel, tone-mapped
+    Png16,
+    /// OpenEXR with 32-bit floats, linear
+    Exr,
+}
+
+impl Format {
+    /// Its name on the command line.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Png8 => "png8",
+            Self::Png16 => "png16",
+            Self::Exr => "exr",
+        }
+    }
+
+    /// Extension of its files.
+    #[must_use]
+    pub const fn extension(self) -> &'static str {
+        match self {
+            Self::Png8 | Self::Png16 => "png",
+            Self::Exr => "exr",
+        }
+    }
+}
+
+/// Format of a list of points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum PointsFormat {
+    /// Comma-separated columns
+    Csv,
+    /// One JSON object a line
+    Jsonl,
+}
+
+/// An element of the list of `--aov`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Planes {
+    /// Every plane there is.
+    All,
+    /// This one.
+    One(Aov),
+}
+
+impl FromStr for Planes {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        if name == "all" { Ok(Self::All) } else { name.parse().map(Self::One) }
+    }
+}
+
+fn planes() -> impl TypedValueParser<Value = Planes> {
+    let all = PossibleValue::new("all").help("Every plane below");
+    let each = Aov::ALL.iter().map(|aov| PossibleValue::new(aov.name()).help(aov.description()));
+    PossibleValuesParser::new(std::iter::once(all).chain(each)).try_map(|name| name.parse::<Planes>())
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let expected = "expected seconds from 0 to 86400";
+    let seconds: f64 = text.parse().map_err(|_| expected)?;
+    if (0.0..=86_400.0).contains(&seconds) { Ok(seconds) } else { Err(expected.to_owned()) }
+}
+
+/// The command line as clap knows it, with the default of each setting in its help.
+#[must_use]
+pub fn command() -> clap::Command {
+    let defaults = toml::Table::try_from(Settings::default()).expect("settings are plain data");
+    let with_settings = ["render", "query", "bench"];
+    with_settings.into_iter().fold(Cli::command(), |command, name| {
+        command.mut_subcommand(name, |sub| sub.mut_args(|arg| describe_setting(arg, &defaults)))
+    })
+}
+
+/// Adds its default to the help of a setting, and lets its value begin with a minus, so that the range check can name it.
+fn describe_setting(arg: clap::Arg, defaults: &toml::Table) -> clap::Arg {
+    let Some(default) = arg.get_long().and_then(|long| defaults.get(long)) else { return arg };
+    let help = arg.get_help().map(ToString::to_string).unwrap_or_default();
+    let optional_value = arg.is_require_equals_set();
+    let listed = arg.get_value_names().is_some_and(|names| names.iter().any(|name| name.contains(',')));
+    arg.help(format!("{help} [default: {}]", spelled(default)))
+        .allow_negative_numbers(!listed && !optional_value)
+        .allow_hyphen_values(listed)
+}
+
+/// A value of a settings file as it is spelled on the command line.
+fn spelled(value: &toml::Value) -> String {
+    match value {
+        toml::Value::String(text) => text.clone(),
+        toml::Value::Float(number) => (*number as f32).to_string(), // settings are f32
+        toml::Value::Array(items) => items.iter().map(spelled).collect::<Vec<_>>().join(","),
+        other => other.to_string(),
+    }
+}
+
+/// Parses `arguments`, the program's name first. Never exits and never panics, whatever they are.
+///
+/// Requests for help and the version are errors too, as clap has it; their exit code is 0.
+pub fn parse_from<I, T>(arguments: I) -> Result<Command, clap::Error>
+where
+    I: IntoIterator<Item = T>,
+    T: Into<OsString> + Clone,
+{
+    let parse = |matches: clap::ArgMatches| Cli::from_arg_matches(&matches).map(|cli| cli.command);
+    if let Some(command) = parse(command().try_get_matches_from(arguments)?)? {
+        return Ok(command);
+    }
+    let rendered = parse(command().try_get_matches_from(["ambray", "render"])?)?;
+    Ok(rendered.expect("a command was named"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn command_is_consistent() {
+        command().debug_assert();
+    }
+
+    #[test]
+    fn no_arguments_render_the_atrium() {
+        let Ok(Command::Render(args)) = parse_from(["ambray"]) else { panic!("expected render") };
+        assert_eq!(args.scene.scene, PathBuf::from("atrium"));
+        assert_eq!(args.output, None);
+        assert_eq!(args.settings.flags, SettingsPatch::default());
+    }
+
+    #[test]
+    fn planes_are_listed() {
+        let Ok(Command::Render(args)) = parse_from(["ambray", "render", "--aov", "depth,openness-raw"])
+        else {
+            panic!("expected render")
+        };
+        assert_eq!(args.aov, [Planes::One(Aov::Depth), Planes::One(Aov::OpennessRaw)]);
+    }
+
+    #[test]
+    fn negative_values_reach_the_range_check() {
+        for flag in ["radius", "exponent", "sun-strength", "filter-plane"] {
+            let parsed = parse_from(["ambray", "render", &format!("--{flag}"), "-1"]);
+            assert!(parsed.is_ok(), "{flag}: {}", parsed.unwrap_err());
+        }
+        for flag in ["ambient", "sun-color", "camera-position"] {
+            let parsed = parse_from(["ambray", "render", &format!("--{flag}"), "-1,0,.5"]);
+            assert!(parsed.is_ok(), "{flag}: {}", parsed.unwrap_err());
+        }
+    }
+
+    #[test]
+    fn help_tells_every_default() {
+        let mut command = command();
+        let render = command.find_subcommand_mut("render").expect("render is a command");
+        let help = render.render_long_help().to_string();
+        for name in toml::Table::try_from(Settings::default()).expect("settings are plain data").keys() {
+            assert!(help.contains(&format!("--{name}")), "{name} has no flag");
+        }
+        assert!(help.contains("[default: 1280x720]") && help.contains("[default: 0.01]"), "{help}");
+    }
+}

@@ -1,0 +1,196 @@
+//! `ambray bench`: the time of whole frames.
+
+use std::{
+    fmt::Write as _,
+    path::Path,
+    time::{Duration, Instant},
+};
+
+use ambray::{Frame, Renderer, settings::Settings};
+use anyhow::bail;
+use serde::Serialize;
+
+use super::{control, explained};
+use crate::{
+    args::BenchArgs,
+    machine::Machine,
+    output::atomic::{Batch, Target},
+    progress::Progress,
+    report::{self, BuildReport, RayReport, SceneReport, StageReport, ViewReport, milliseconds},
+    scene_source, settings_file, signals, terminal,
+};
+
+/// The result of `ambray bench`.
+#[derive(Clone, Debug, Serialize)]
+struct BenchReport {
+    machine: Machine,
+    threads: usize,
+    warmup: u32,
+    settings: Settings,
+    scenes: Vec<SceneBench>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct SceneBench {
+    scene: SceneReport,
+    build: BuildReport,
+    view: ViewReport,
+    frames: usize,
+    frame_ms: Spread,
+    /// Medians of the stages.
+    stages: StageReport,
+    rays: RayReport,
+}
+
+/// Distribution of the time of a frame, milliseconds.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+struct Spread {
+    median: f64,
+    p95: f64,
+    min: f64,
+    max: f64,
+    mean: f64,
+}
+
+/// Measures the scenes.
+pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
+    let settings = settings_file::resolve(&args.settings)?;
+    let target = args.output.as_deref().map(Target::of);
+    let saved = args.settings.save_settings.as_deref().map(Target::of);
+    if target.is_some() && target == saved {
+        bail!(
+            "--save-settings {}: the result goes there",
+            saved.as_ref().map(Target::name).unwrap_or_default()
+        );
+    }
+    target.iter().chain(&saved).try_for_each(Target::check)?;
+    if cfg!(debug_assertions) {
+        terminal::warn("this is not a release build: times say little");
+    }
+    let mut report = BenchReport {
+        machine: Machine::detect(),
+        threads: 0,
+        warmup: args.warmup,
+        settings: settings.clone(),
+        scenes: Vec::new(),
+    };
+    for scene in &args.scenes {
+        let (bench, threads) = measure(scene, args, &settings)?;
+        report.threads = threads;
+        if !args.json && !args.run.quiet {
+            terminal::print(&bench.text())?;
+        }
+        report.scenes.push(bench);
+    }
+    let json = report::json(&report)?;
+    let mut batch = Batch::default();
+    if let Some(target) = &target {
+        batch.add(target, |out| Ok(out.write_all(json.as_bytes())?))?;
+    }
+    if let Some(saved) = &saved {
+        let toml = settings_file::write(&settings);
+        batch.add(saved, |out| Ok(out.write_all(toml.as_bytes())?))?;
+    }
+    batch.commit()?;
+    if args.json { terminal::print(&json) } else { Ok(()) }
+}
+
+/// Measures one scene; also returns the number of threads.
+fn measure(path: &Path, args: &BenchArgs, settings: &Settings) -> anyhow::Result<(SceneBench, usize)> {
+    let source = scene_source::open(path, args.gltf_scene.as_deref())?;
+    let scene = SceneReport::of(&source);
+    let renderer = Renderer::new(source.scene);
+    let _graceful = signals::Graceful::begin();
+    let render = || -> anyhow::Result<(Frame, Duration)> {
+        let start = Instant::now();
+        let frame = renderer.render(settings, control(&args.run, &|_| ())).map_err(explained)?;
+        Ok((frame, start.elapsed()))
+    };
+    let progress = Progress::new("measuring", args.run.quiet);
+    for _ in 0..args.warmup {
+        render()?;
+    }
+    let start = Instant::now();
+    let (mut times, mut stages) = (Vec::new(), Vec::new());
+    loop {
+        let (frame, time) = render()?;
+        times.push(time);
+        stages.push(StageReport::of(&frame.stats.times));
+        let by_frames = times.len() as f64 / f64::from(args.frames);
+        let by_time = if args.seconds > 0.0 { start.elapsed().as_secs_f64() / args.seconds } else { 1.0 };
+        progress.report(by_frames.min(by_time) as f32);
+        if by_frames < 1.0 || by_time < 1.0 {
+            continue;
+        }
+        times.sort_unstable();
+        let bench = SceneBench {
+            scene,
+            build: BuildReport::of(&renderer.build_stats()),
+            view: ViewReport::of(&frame.view),
+            frames: times.len(),
+            frame_ms: Spread::of(&times),
+            stages: medians(&stages),
+            rays: RayReport::of(frame.stats.rays, quantile(&times, 0.5)),
+        };
+        return Ok((bench, frame.stats.threads));
+    }
+}
+
+impl Spread {
+    /// Of `times` in ascending order.
+    fn of(times: &[Duration]) -> Self {
+        let mean = times.iter().sum::<Duration>().div_f64(times.len() as f64);
+        Self {
+            median: milliseconds(quantile(times, 0.5)),
+            p95: milliseconds(quantile(times, 0.95)),
+            min: milliseconds(quantile(times, 0.0)),
+            max: milliseconds(quantile(times, 1.0)),
+            mean: milliseconds(mean),
+        }
+    }
+}
+
+/// The smallest value that is not below the share `q` of the ascending `values`: nearest rank.
+fn quantile<T: Copy>(values: &[T], q: f64) -> T {
+    let rank = (q * values.len() as f64).ceil() as usize;
+    values[rank.saturating_sub(1).min(values.len() - 1)]
+}
+
+fn medians(stages: &[StageReport]) -> StageReport {
+    let median = |stage: fn(&StageReport) -> f64| {
+        let mut times: Vec<f64> = stages.iter().map(stage).collect();
+        times.sort_by(f64::total_cmp);
+        quantile(&times, 0.5)
+    };
+    StageReport {
+        primary_ms: median(|s| s.primary_ms),
+        direct_ms: median(|s| s.direct_ms),
+        ambient_ms: median(|s| s.ambient_ms),
+        filter_ms: median(|s| s.filter_ms),
+        total_ms: median(|s| s.total_ms),
+    }
+}
+
+impl SceneBench {
+    fn text(&self) -> String {
+        let mut text = report::scene_line(&self.scene, &self.build);
+        let Spread { median, p95, min, .. } = self.frame_ms;
+        let frames = self.frames;
+        let _ = writeln!(text, "frames   {frames}: median {median:.2} ms, p95 {p95:.2} ms, min {min:.2} ms");
+        let _ = writeln!(text, "stages   median {}", report::times_line(&self.stages));
+        let _ = writeln!(text, "rays     {}", report::rays_line(&self.rays));
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_are_of_nearest_rank() {
+        let values: Vec<u32> = (1..=100).collect();
+        assert_eq!([0.0, 0.5, 0.95, 1.0].map(|q| quantile(&values, q)), [1, 50, 95, 100]);
+        assert_eq!(quantile(&[7], 0.95), 7);
+    }
+}

@@ -1,0 +1,160 @@
+//! `ambray query`: ambient light at the points of a list, read and written in chunks.
+
+use std::{
+    fs::File,
+    io::{self, BufRead, BufReader, Write, stdin},
+    path::Path,
+    time::{Duration, Instant},
+};
+
+use ambray::{QueryPoint, RenderError, Renderer, settings::Settings};
+use anyhow::{Context as _, anyhow, bail};
+
+use super::{control, explained};
+use crate::{
+    args::QueryArgs,
+    output::atomic::{Batch, Target},
+    points::{self, Reader},
+    progress::Progress,
+    report::grouped,
+    scene_source, settings_file, terminal,
+};
+
+/// Points that are evaluated together: enough to keep the threads busy, few enough for small memory.
+const CHUNK: usize = 1 << 15;
+
+/// Evaluates points.
+pub fn run(args: &QueryArgs) -> anyhow::Result<()> {
+    let settings = settings_file::resolve(&args.settings)?;
+    let target = Target::of(args.output.as_deref().unwrap_or(Path::new("-")));
+    target.check()?;
+    let saved = args.settings.save_settings.as_deref().map(Target::of);
+    if saved.as_ref() == Some(&target) {
+        bail!("--save-settings {}: the results go there", target.name());
+    }
+    saved.iter().try_for_each(Target::check)?;
+    let (input, length) = open(&args.points)?;
+    let name = if length.is_none() && args.points == Path::new("-") {
+        "stdin".to_owned()
+    } else {
+        args.points.display().to_string()
+    };
+    let reader = Reader::new(input, name, args.points_format);
+
+    let source = scene_source::open(&args.scene.scene, args.scene.gltf_scene.as_deref())?;
+    let renderer = Renderer::new(source.scene);
+    let mut job =
+        Job { args, settings: &settings, renderer: &renderer, reader, length, done: Done::default() };
+    // Ctrl-C ends the program at once here, even where it waits for more points; temporary files are removed.
+    let mut batch = Batch::default();
+    if let Some(saved) = &saved {
+        let toml = settings_file::write(&settings);
+        batch.add(saved, |out| Ok(out.write_all(toml.as_bytes())?))?;
+    }
+    match &target {
+        // Nothing waits in memory: results go out as they come.
+        Target::Stdout => job.run(&mut io::stdout().lock())?,
+        Target::File(_) => batch.add(&target, |mut out| job.run(&mut out))?,
+    }
+    batch.commit()?;
+    if !args.run.quiet {
+        job.done.say(&target);
+    }
+    Ok(())
+}
+
+/// The points and the length of their file, if it has one.
+fn open(path: &Path) -> anyhow::Result<(Box<dyn BufRead>, Option<u64>)> {
+    if path == Path::new("-") {
+        return Ok((Box::new(stdin().lock()), None));
+    }
+    let context = || format!("points {}", path.display());
+    let file = File::open(path).with_context(context)?;
+    let metadata = file.metadata().with_context(context)?;
+    if metadata.is_dir() {
+        return Err(anyhow!("is a folder")).with_context(context);
+    }
+    Ok((Box::new(BufReader::with_capacity(1 << 16, file)), metadata.is_file().then_some(metadata.len())))
+}
+
+struct Job<'a> {
+    args: &'a QueryArgs,
+    settings: &'a Settings,
+    renderer: &'a Renderer,
+    reader: Reader<Box<dyn BufRead>>,
+    length: Option<u64>,
+    done: Done,
+}
+
+#[derive(Debug, Default)]
+struct Done {
+    points: u64,
+    rays: u64,
+    time: Duration,
+}
+
+impl Job<'_> {
+    fn run(&mut self, output: &mut dyn Write) -> anyhow::Result<()> {
+        let progress = Progress::new("evaluating", self.args.run.quiet);
+        if !self.args.json {
+            output.write_all(points::RESULT_HEADER.as_bytes())?;
+        }
+        loop {
+            let text = self.chunk()?;
+            if text.is_empty() {
+                return Ok(output.flush()?);
+            }
+            output.write_all(text.as_bytes())?;
+            if let Some(length) = self.length {
+                progress.report(self.reader.bytes() as f32 / length.max(1) as f32);
+            }
+        }
+    }
+
+    /// Results of the next points; empty at the end.
+    fn chunk(&mut self) -> anyhow::Result<String> {
+        let located = self.reader.next_chunk(CHUNK)?;
+        if located.is_empty() {
+            return Ok(String::new());
+        }
+        let points: Vec<QueryPoint> = located.iter().map(|located| located.point).collect();
+        let start = Instant::now();
+        let results = self.renderer.query(self.settings, &points, control(&self.args.run, &|_| ())).map_err(
+            |error| match error {
+                RenderError::Point { index, reason } => {
+                    let line = located.get(index).map_or(0, |point| point.line);
+                    anyhow!("{}:{line}: {reason}", self.reader.name())
+                }
+                other => explained(other),
+            },
+        )?;
+        self.done.time += start.elapsed();
+        self.done.points += points.len() as u64;
+        let mut text = String::new();
+        for (point, result) in points.iter().zip(&results) {
+            self.done.rays +=
+                u64::from(result.ambient_rays) + u64::from(result.chord_rays) + u64::from(result.shadow_rays);
+            if self.args.json {
+                points::push_json(&mut text, point, result)?;
+            } else {
+                points::push_csv(&mut text, point, result);
+            }
+        }
+        Ok(text)
+    }
+}
+
+impl Done {
+    /// Tells on stderr, since results may go to stdout.
+    fn say(&self, target: &Target) {
+        let seconds = self.time.as_secs_f64();
+        let rate = self.rays as f64 * 1e-6 / seconds.max(1e-9);
+        terminal::say(&format!(
+            "{} points, {} rays in {:.1} ms, {rate:.1} million rays a second; wrote {}",
+            grouped(self.points),
+            grouped(self.rays),
+            seconds * 1e3,
+            target.name()
+        ));
+    }
+}

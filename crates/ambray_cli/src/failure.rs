@@ -1,0 +1,97 @@
+//! Errors on their way to the user: one line each, a hint below, the exit code.
+
+use std::{fmt, io, process::ExitCode};
+
+use crate::{signals::Interrupted, terminal};
+
+/// Exit code of every error.
+pub const EXIT_ERROR: u8 = 2;
+/// Exit code after Ctrl-C, as shells have it: 128 + SIGINT.
+pub const EXIT_INTERRUPTED: u8 = 130;
+
+/// Several problems found at once; each gets its own line.
+#[derive(Debug)]
+pub struct Problems(pub Vec<String>);
+
+impl fmt::Display for Problems {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0.join("; "))
+    }
+}
+
+impl std::error::Error for Problems {}
+
+/// An error with advice.
+#[derive(Debug)]
+struct Hinted {
+    error: anyhow::Error,
+    hint: String,
+}
+
+impl fmt::Display for Hinted {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:#}", self.error)
+    }
+}
+
+impl std::error::Error for Hinted {}
+
+/// Adds advice to an error, shown on a line of its own.
+#[must_use]
+pub fn with_hint(error: impl Into<anyhow::Error>, hint: impl Into<String>) -> anyhow::Error {
+    anyhow::Error::new(Hinted { error: error.into(), hint: hint.into() })
+}
+
+/// Prints `error` and returns the exit code. A reader who left (broken pipe) is no error.
+#[must_use]
+pub fn report(error: &anyhow::Error) -> ExitCode {
+    let broken_pipe = |cause: &(dyn std::error::Error + 'static)| {
+        cause.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == io::ErrorKind::BrokenPipe)
+    };
+    if error.chain().any(broken_pipe) {
+        return ExitCode::SUCCESS;
+    }
+    if error.downcast_ref::<Interrupted>().is_some() {
+        terminal::say("ambray: interrupted");
+        return ExitCode::from(EXIT_INTERRUPTED);
+    }
+    for line in lines(error) {
+        terminal::say(&line);
+    }
+    ExitCode::from(EXIT_ERROR)
+}
+
+/// The lines that tell about `error`.
+fn lines(error: &anyhow::Error) -> Vec<String> {
+    if let Some(Problems(problems)) = error.downcast_ref() {
+        return problems.iter().map(|problem| format!("ambray: error: {}", one_line(problem))).collect();
+    }
+    let mut lines = vec![format!("ambray: error: {}", one_line(&format!("{error:#}")))];
+    lines.extend(error.downcast_ref::<Hinted>().map(|hinted| format!("  hint: {}", hinted.hint)));
+    lines
+}
+
+fn one_line(text: &str) -> String {
+    text.lines().map(str::trim).filter(|line| !line.is_empty()).collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use anyhow::{Context as _, anyhow};
+
+    use super::*;
+
+    #[test]
+    fn context_reads_from_the_outside_in() {
+        let error = anyhow!("no such\nfile").context("scene.glb");
+        assert_eq!(lines(&error), ["ambray: error: scene.glb: no such file"]);
+        let error = with_hint(error, "check the path");
+        assert_eq!(lines(&error), ["ambray: error: scene.glb: no such file", "  hint: check the path"]);
+    }
+
+    #[test]
+    fn each_problem_has_its_line() {
+        let error = Err::<(), _>(Problems(vec!["a".to_owned(), "b".to_owned()])).context("x").unwrap_err();
+        assert_eq!(lines(&error), ["ambray: error: a", "ambray: error: b"]);
+    }
+}

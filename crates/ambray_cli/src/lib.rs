@@ -1,0 +1,54 @@
+//! The `ambray` program as a library, so that tests and fuzzers reach its parts.
+//!
+//! The way of a command: [`args`] reads the command line without side effects, [`settings_file`] joins defaults, preset,
+//! file and flags into settings, [`commands`] do the work, [`output`] writes pictures, [`report`] says what was done.
+#![forbid(unsafe_code)]
+
+pub mod args;
+pub mod commands;
+pub mod failure;
+pub mod machine;
+pub mod output;
+pub mod points;
+pub mod progress;
+pub mod report;
+pub mod scene_source;
+pub mod settings_file;
+pub mod signals;
+pub mod terminal;
+
+use std::{ffi::OsString, process::ExitCode};
+
+use args::Command;
+
+/// Runs the program with `arguments`, the program's name first; prints errors and returns the exit code:
+/// 0 done, 2 error, 130 interrupted.
+pub fn run<I, T>(arguments: I) -> ExitCode
+where
+    I: IntoIterator<Item = T>,
+    T: Into<OsString> + Clone,
+{
+    terminal::log_warnings();
+    let outcome = match args::parse_from(arguments) {
+        Ok(command) => signals::install().and_then(|()| dispatch(&command)),
+        Err(error) => {
+            let _ = error.print(); // a closed terminal is no reason to fail
+            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(failure::EXIT_ERROR));
+        }
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => failure::report(&error),
+    }
+}
+
+fn dispatch(command: &Command) -> anyhow::Result<()> {
+    match command {
+        Command::Render(args) => commands::render::run(args),
+        Command::Query(args) => commands::query::run(args),
+        Command::Bench(args) => commands::bench::run(args),
+        Command::Info(args) => commands::info::run(args),
+        Command::Completions(args) => commands::documents::completions(args),
+        Command::Man => commands::documents::man(),
+    }
+}

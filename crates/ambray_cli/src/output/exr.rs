@@ -1,0 +1,86 @@
+//! OpenEXR files: the picture as R, G, B, every other plane as a layer `plane.channel`; 32-bit floats, linear, ZIP.
+
+use ambray::{Aov, Frame};
+use exr::prelude::{
+    AnyChannel, AnyChannels, AttributeValue, Compression, Encoding, FlatSamples, Image, Layer,
+    LayerAttributes, LineOrder, SmallVec, Text, WritableImage as _, attribute::Matrix4x4,
+};
+
+use super::atomic::Output;
+use crate::report::CameraReport;
+
+/// Attribute that holds the settings as TOML.
+pub const SETTINGS_ATTRIBUTE: &str = "ambraySettings";
+
+/// Writes the picture and `planes` of `frame`; `settings` as TOML and the name of the scene go to the header.
+pub fn write(
+    output: &mut dyn Output,
+    frame: &Frame,
+    planes: &[Aov],
+    settings: &str,
+    scene: &str,
+) -> anyhow::Result<()> {
+    let size = (frame.width as usize, frame.height as usize);
+    let mut channels = SmallVec::new();
+    for aov in std::iter::once(Aov::Beauty).chain(planes.iter().copied().filter(|aov| *aov != Aov::Beauty)) {
+        channels.extend(layer(frame, aov));
+    }
+    let encoding = Encoding {
+        compression: Compression::ZIP16,
+        blocks: exr::image::Blocks::ScanLines,
+        line_order: LineOrder::Increasing,
+    };
+    let attributes = attributes(frame, settings, scene);
+    let image = Image::from_layer(Layer::new(size, attributes, encoding, AnyChannels::sort(channels)));
+    Ok(image.write().to_buffered(output)?)
+}
+
+fn layer(frame: &Frame, aov: Aov) -> impl Iterator<Item = AnyChannel<FlatSamples>> {
+    let values = frame.plane(aov);
+    let names = aov.channels();
+    names.iter().enumerate().map(move |(i, channel)| {
+        let name = if aov == Aov::Beauty { (*channel).to_owned() } else { format!("{aov}.{channel}") };
+        let samples = values.iter().skip(i).step_by(names.len()).copied().collect();
+        AnyChannel::new(name.as_str(), FlatSamples::F32(samples))
+    })
+}
+
+fn attributes(frame: &Frame, settings: &str, scene: &str) -> LayerAttributes {
+    let camera = CameraReport::of(&frame.view);
+    let vertical = camera.vertical_fov_degrees;
+    let horizontal = vertical.map(|degrees| {
+        let half_height = (0.5 * degrees.to_radians()).tan();
+        (2.0 * (half_height * frame.width as f32 / frame.height as f32).atan()).to_degrees()
+    });
+    // exr keeps other attributes in no particular order: a second one would make the bytes of the file random.
+    let other = [(Text::from(SETTINGS_ATTRIBUTE), AttributeValue::Text(utf8(settings)))];
+    LayerAttributes {
+        software_name: Some(Text::from(concat!("ambray ", env!("CARGO_PKG_VERSION")))),
+        comments: Some(utf8(scene)),
+        world_to_camera: Some(world_to_camera(&camera)),
+        vertical_field_of_view: vertical,
+        horizontal_field_of_view: horizontal,
+        other: other.into_iter().collect(),
+        ..LayerAttributes::default()
+    }
+}
+
+/// Text as UTF-8, as other programs write it; the `From` of [`Text`] would refuse what Latin-1 lacks.
+fn utf8(text: &str) -> Text {
+    Text::from_slice_unchecked(text.as_bytes())
+}
+
+/// For row vectors, p · M, as OpenEXR has it: x right, y up, z forward.
+fn world_to_camera(camera: &CameraReport) -> Matrix4x4 {
+    let axes = [camera.right, camera.up, camera.forward];
+    let dot = |axis: [f32; 3]| (0..3).map(|i| axis[i] * camera.position[i]).sum::<f32>();
+    let mut matrix = [0.0; 16];
+    for (column, axis) in axes.into_iter().enumerate() {
+        for row in 0..3 {
+            matrix[4 * row + column] = axis[row];
+        }
+        matrix[12 + column] = -dot(axis);
+    }
+    matrix[15] = 1.0;
+    matrix
+}

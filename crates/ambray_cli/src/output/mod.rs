@@ -1,0 +1,161 @@
+//! Pictures out: which files, in which format, with which planes.
+
+pub mod atomic;
+pub mod exr;
+pub mod false_colour;
+pub mod png;
+pub mod tone_map;
+
+use std::path::{Path, PathBuf};
+
+use ambray::{Aov, Frame, settings::Settings};
+use anyhow::{anyhow, bail};
+
+use self::{
+    atomic::{Batch, Target},
+    png::Bits,
+};
+use crate::{
+    args::{Format, Planes},
+    failure::with_hint,
+    settings_file,
+};
+
+/// Which files a frame becomes. Made before the frame, so that what cannot be written is refused early.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Plan {
+    /// The picture, in OpenEXR with all planes.
+    pub main: Target,
+    /// Format of all files.
+    pub format: Format,
+    /// Planes besides the picture.
+    pub planes: Vec<Aov>,
+}
+
+impl Plan {
+    /// Decides the format by option and extension, and checks that the files can be written.
+    pub fn new(output: Option<&Path>, format: Option<Format>, planes: &[Planes]) -> anyhow::Result<Self> {
+        let default = match format {
+            Some(Format::Exr) => Path::new("ambray.exr"),
+            _ => Path::new("ambray.png"),
+        };
+        let main = Target::of(output.unwrap_or(default));
+        let plan = Self { format: decide_format(&main, format)?, planes: distinct(planes), main };
+        if plan.main == Target::Stdout && plan.format != Format::Exr && !plan.planes.is_empty() {
+            return Err(with_hint(
+                anyhow!("--aov with -o -: PNG needs a file for each plane, and stdout is one"),
+                "--format exr puts all planes into one file",
+            ));
+        }
+        plan.main.check_binary()?;
+        plan.files().iter().try_for_each(|(target, _)| target.check())?;
+        Ok(plan)
+    }
+
+    /// The files with their planes.
+    #[must_use]
+    pub fn files(&self) -> Vec<(Target, Aov)> {
+        let mut files = vec![(self.main.clone(), Aov::Beauty)];
+        if let (Target::File(path), true) = (&self.main, self.format != Format::Exr) {
+            files.extend(self.planes.iter().map(|&aov| (Target::File(plane_path(path, aov)), aov)));
+        }
+        files
+    }
+
+    /// Writes the files of `frame` to `batch`.
+    pub fn write(
+        &self,
+        frame: &Frame,
+        settings: &Settings,
+        scene: &str,
+        batch: &mut Batch,
+    ) -> anyhow::Result<()> {
+        let toml = settings_file::write(settings);
+        let bits = match self.format {
+            Format::Exr => {
+                return batch.add(&self.main, |out| exr::write(out, frame, &self.planes, &toml, scene));
+            }
+            Format::Png8 => Bits::Eight,
+            Format::Png16 => Bits::Sixteen,
+        };
+        let software = concat!("ambray ", env!("CARGO_PKG_VERSION"));
+        let texts =
+            [("Software", software), ("ambray:scene", scene), (settings_file::PNG_KEYWORD, toml.as_str())];
+        for (target, aov) in self.files() {
+            let picture = false_colour::show(frame, aov, settings);
+            let size = (frame.width, frame.height);
+            batch.add(&target, |out| png::write(out, size, &picture, bits, &texts))?;
+            crate::signals::check()?;
+        }
+        Ok(())
+    }
+}
+
+fn decide_format(target: &Target, format: Option<Format>) -> anyhow::Result<Format> {
+    let Target::File(path) = target else { return Ok(format.unwrap_or(Format::Png8)) };
+    let extension = path.extension().map(|ext| ext.to_string_lossy().to_ascii_lowercase());
+    match (extension.as_deref(), format) {
+        (Some(known @ ("png" | "exr")), Some(format)) if known != format.extension() => {
+            bail!(
+                "--format {} is not allowed with output {}: the formats differ",
+                format.name(),
+                path.display()
+            )
+        }
+        (_, Some(format)) => Ok(format),
+        (Some("png"), None) => Ok(Format::Png8),
+        (Some("exr"), None) => Ok(Format::Exr),
+        (_, None) => Err(with_hint(
+            anyhow!("output {}: the extension says no format; allowed are .png and .exr", path.display()),
+            "or choose a format with --format png8, png16 or exr",
+        )),
+    }
+}
+
+/// The planes of the list besides the picture itself, each once.
+fn distinct(planes: &[Planes]) -> Vec<Aov> {
+    let asked = |aov: &Aov| planes.iter().any(|p| *p == Planes::All || *p == Planes::One(*aov));
+    Aov::ALL.iter().copied().filter(|aov| *aov != Aov::Beauty && asked(aov)).collect()
+}
+
+/// `dir/out.png` becomes `dir/out.depth.png`.
+fn plane_path(path: &Path, aov: Aov) -> PathBuf {
+    let mut name = path.file_stem().unwrap_or_default().to_owned();
+    name.push(format!(".{aov}.png"));
+    path.with_file_name(name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[track_caller]
+    fn check(path: &str, format: Option<Format>, expected: Result<Format, &str>) {
+        match (decide_format(&Target::of(Path::new(path)), format), expected) {
+            (Ok(actual), Ok(expected)) => assert_eq!(actual, expected, "{path}"),
+            (Err(error), Err(part)) => assert!(format!("{error:#}").contains(part), "{path}: {error:#}"),
+            (actual, expected) => panic!("{path}: {actual:?} is not {expected:?}"),
+        }
+    }
+
+    #[test]
+    fn format_follows_option_and_extension() {
+        check("a.png", None, Ok(Format::Png8));
+        check("a.EXR", None, Ok(Format::Exr));
+        check("a.png", Some(Format::Png16), Ok(Format::Png16));
+        check("a", Some(Format::Exr), Ok(Format::Exr));
+        check("-", None, Ok(Format::Png8));
+        check("a.png", Some(Format::Exr), Err("the formats differ"));
+        check("a.exr", Some(Format::Png8), Err("the formats differ"));
+        check("a.jpg", None, Err("allowed are .png and .exr"));
+        check("a", None, Err("allowed are .png and .exr"));
+    }
+
+    #[test]
+    fn planes_are_listed_once_and_without_the_picture() {
+        let list = [Planes::One(Aov::Depth), Planes::One(Aov::Beauty), Planes::One(Aov::Depth)];
+        assert_eq!(distinct(&list), [Aov::Depth]);
+        assert_eq!(distinct(&[Planes::All]).len(), Aov::ALL.len() - 1);
+        assert_eq!(plane_path(Path::new("d/a.b.png"), Aov::Depth), Path::new("d/a.b.depth.png"));
+    }
+}

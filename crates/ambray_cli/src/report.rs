@@ -1,0 +1,379 @@
+//! What was done, as text for people and as JSON for programs. Keys carry their unit; they are never renamed.
+
+use std::{fmt::Write as _, time::Duration};
+
+use ambray::{BuildStats, Frame, RayCounts, Renderer, StageTimes, View, scene::Scene, settings::Settings};
+use serde::Serialize;
+
+use crate::scene_source::Source;
+
+/// Milliseconds to a thousandth.
+#[must_use]
+pub fn milliseconds(time: Duration) -> f64 {
+    (time.as_secs_f64() * 1e6).round() / 1e3
+}
+
+/// A count with its thousands set apart.
+#[must_use]
+pub fn grouped(count: u64) -> String {
+    let digits = count.to_string();
+    let mut text = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            text.push(' ');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// A size in memory.
+#[must_use]
+pub fn bytes(count: u64) -> String {
+    match count {
+        0..10_000 => format!("{count} B"),
+        10_000..10_000_000 => format!("{:.1} kB", count as f64 * 1e-3),
+        _ => format!("{:.1} MB", count as f64 * 1e-6),
+    }
+}
+
+/// The scene in numbers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SceneReport {
+    /// Name of the scene.
+    pub name: String,
+    /// Path of the file, or `atrium`.
+    pub source: String,
+    /// Triangles, instances counted each time.
+    pub triangles: u64,
+    /// Placed meshes.
+    pub instances: u64,
+    /// Distinct meshes.
+    pub meshes: usize,
+    /// Materials.
+    pub materials: usize,
+    /// Images.
+    pub images: usize,
+    /// Lights of the scene.
+    pub lights: usize,
+    /// Cameras of the scene.
+    pub cameras: usize,
+    /// What the loader had to say.
+    pub warnings: Vec<String>,
+    /// Time to read the file and decode its textures.
+    pub load_ms: f64,
+}
+
+impl SceneReport {
+    /// Counts what is in `source`.
+    #[must_use]
+    pub fn of(source: &Source) -> Self {
+        let scene: &Scene = &source.scene;
+        Self {
+            name: scene.name.clone(),
+            source: source.path.clone(),
+            triangles: scene.triangle_count(),
+            instances: scene.instances.len() as u64,
+            meshes: scene.meshes.len(),
+            materials: scene.materials.len(),
+            images: scene.images.len(),
+            lights: scene.lights.len(),
+            cameras: scene.cameras.len(),
+            warnings: source.warnings.clone(),
+            load_ms: milliseconds(source.load_time),
+        }
+    }
+}
+
+/// The acceleration structures in numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct BuildReport {
+    /// Time to build them.
+    pub build_ms: f64,
+    /// Their memory.
+    pub acceleration_bytes: u64,
+    /// Instruction set of the kernels.
+    pub isa: &'static str,
+}
+
+impl BuildReport {
+    /// From the renderer's numbers.
+    #[must_use]
+    pub fn of(stats: &BuildStats) -> Self {
+        let build_ms = milliseconds(stats.build_time);
+        Self { build_ms, acceleration_bytes: stats.acceleration_bytes, isa: stats.isa }
+    }
+}
+
+/// The camera of a frame.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CameraReport {
+    /// Where it came from, in words.
+    pub origin: String,
+    /// Eye point, world space.
+    pub position: [f32; 3],
+    /// Unit viewing direction.
+    pub forward: [f32; 3],
+    /// Unit vector to the right in the picture.
+    pub right: [f32; 3],
+    /// Unit vector up in the picture.
+    pub up: [f32; 3],
+    /// Full vertical angle of view, of a perspective camera.
+    pub vertical_fov_degrees: Option<f32>,
+    /// Height of the view in scene units, of an orthographic camera.
+    pub orthographic_height: Option<f32>,
+}
+
+impl CameraReport {
+    /// The camera of `view`, recovered from its rays.
+    #[must_use]
+    pub fn of(view: &View) -> Self {
+        let camera = &view.camera;
+        let (width, height) = camera.size();
+        let forward = camera.forward();
+        // Where the rays of three pixels pierce the plane one unit before the eye; the pixels may lie outside the picture.
+        let pierce = |x, y| {
+            let ray = camera.primary_ray(x, y, 0);
+            ray.origin + ray.direction / ray.direction.dot(forward)
+        };
+        let corner = pierce(0, 0);
+        let right = (pierce(width, 0) - corner).normalize_or_zero();
+        let up = (corner - pierce(0, height)).normalize_or_zero();
+        let pixel = camera.footprint(1.0);
+        let is_perspective = camera.footprint(2.0) > pixel;
+        let view_height = pixel * height as f32;
+        let degrees = (2.0 * (0.5 * view_height).atan()).to_degrees();
+        Self {
+            origin: view.camera_origin.clone(),
+            position: camera.position().to_array(),
+            forward: forward.to_array(),
+            right: right.to_array(),
+            up: up.to_array(),
+            vertical_fov_degrees: is_perspective.then_some(degrees),
+            orthographic_height: (!is_perspective).then_some(view_height),
+        }
+    }
+}
+
+/// Everything that was chosen for a frame.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ViewReport {
+    /// The camera.
+    pub camera: CameraReport,
+    /// Near-field radius R, scene units.
+    pub radius: f32,
+    /// Ambient radiance, linear RGB.
+    pub ambient: [f32; 3],
+    /// Colour where nothing is seen, linear RGB.
+    pub background: [f32; 3],
+    /// Lights that shine.
+    pub lights: usize,
+}
+
+impl ViewReport {
+    /// What `view` holds.
+    #[must_use]
+    pub fn of(view: &View) -> Self {
+        Self {
+            camera: CameraReport::of(view),
+            radius: view.radius,
+            ambient: view.ambient.to_array(),
+            background: view.background.to_array(),
+            lights: view.lights.len(),
+        }
+    }
+}
+
+/// Wall time of the stages.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct StageReport {
+    /// Primary rays and surface attributes.
+    pub primary_ms: f64,
+    /// Direct light with its shadow rays.
+    pub direct_ms: f64,
+    /// Ambient rays of both batches.
+    pub ambient_ms: f64,
+    /// Filter and composition.
+    pub filter_ms: f64,
+    /// The whole frame.
+    pub total_ms: f64,
+}
+
+impl StageReport {
+    /// From the renderer's times.
+    #[must_use]
+    pub fn of(times: &StageTimes) -> Self {
+        Self {
+            primary_ms: milliseconds(times.primary),
+            direct_ms: milliseconds(times.direct),
+            ambient_ms: milliseconds(times.ambient),
+            filter_ms: milliseconds(times.filter),
+            total_ms: milliseconds(times.total),
+        }
+    }
+}
+
+/// Rays of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct RayReport {
+    /// By type.
+    #[serde(flatten)]
+    pub by_type: RayCounts,
+    /// Of all types.
+    pub total: u64,
+    /// Rays of all types per second of the whole frame, millions.
+    pub mrays_per_s: f64,
+}
+
+impl RayReport {
+    /// `rays` traced in `time`.
+    #[must_use]
+    pub fn of(rays: RayCounts, time: Duration) -> Self {
+        let rate = rays.total() as f64 * 1e-6 / time.as_secs_f64().max(1e-9);
+        Self { by_type: rays, total: rays.total(), mrays_per_s: (rate * 1e3).round() / 1e3 }
+    }
+}
+
+/// The report of `ambray render`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RenderReport {
+    /// Version of ambray.
+    pub version: &'static str,
+    /// The scene.
+    pub scene: SceneReport,
+    /// The acceleration structures.
+    pub build: BuildReport,
+    /// What was chosen for the frame.
+    pub view: ViewReport,
+    /// Pixels in a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Ambient rays per pixel.
+    pub spp: u32,
+    /// Threads used.
+    pub threads: usize,
+    /// Wall time of the frame.
+    pub times: StageReport,
+    /// Rays of the frame.
+    pub rays: RayReport,
+    /// Time to encode and write the files.
+    pub write_ms: f64,
+    /// Files written, the picture first.
+    pub outputs: Vec<String>,
+    /// All settings.
+    pub settings: Settings,
+}
+
+impl RenderReport {
+    /// About a `frame` that `renderer` made.
+    #[must_use]
+    pub fn of(
+        scene: SceneReport,
+        renderer: &Renderer,
+        settings: &Settings,
+        frame: &Frame,
+        write_time: Duration,
+        outputs: Vec<String>,
+    ) -> Self {
+        Self {
+            version: env!("CARGO_PKG_VERSION"),
+            scene,
+            build: BuildReport::of(&renderer.build_stats()),
+            view: ViewReport::of(&frame.view),
+            width: frame.width,
+            height: frame.height,
+            spp: settings.spp,
+            threads: frame.stats.threads,
+            times: StageReport::of(&frame.stats.times),
+            rays: RayReport::of(frame.stats.rays, frame.stats.times.total),
+            write_ms: milliseconds(write_time),
+            outputs,
+            settings: settings.clone(),
+        }
+    }
+
+    /// For people.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut text = scene_line(&self.scene, &self.build);
+        let Self { view, times, rays, .. } = self;
+        let _ = writeln!(text, "camera   {}", camera_line(&view.camera)); // writing to a string cannot fail
+        let _ = writeln!(
+            text,
+            "frame    {}x{}, {} rays/pixel, radius {}, {} threads",
+            self.width, self.height, self.spp, view.radius, self.threads
+        );
+        let _ = writeln!(text, "time     {}", times_line(times));
+        let _ = writeln!(text, "rays     {}", rays_line(rays));
+        let _ = writeln!(text, "wrote    {} ({:.0} ms)", self.outputs.join(", "), self.write_ms);
+        text
+    }
+}
+
+/// Scene and acceleration structures in a line.
+#[must_use]
+pub fn scene_line(scene: &SceneReport, build: &BuildReport) -> String {
+    format!(
+        "scene    {}: {} triangles, {} instances; loaded in {:.0} ms, built in {:.0} ms, {}\n",
+        scene.source,
+        grouped(scene.triangles),
+        grouped(scene.instances),
+        scene.load_ms,
+        build.build_ms,
+        bytes(build.acceleration_bytes),
+    )
+}
+
+fn camera_line(camera: &CameraReport) -> String {
+    let list = |v: [f32; 3]| v.map(|x| format!("{}", (x * 1e3).round() * 1e-3 + 0.0)).join(",");
+    let projection = match (camera.vertical_fov_degrees, camera.orthographic_height) {
+        (Some(degrees), _) => format!("{degrees:.1}° upright"),
+        (None, height) => format!("orthographic, height {}", height.unwrap_or_default()),
+    };
+    let (position, forward) = (list(camera.position), list(camera.forward));
+    format!("{}: at {position}, looking along {forward}, {projection}", camera.origin)
+}
+
+/// Times of the stages in a line.
+#[must_use]
+pub fn times_line(times: &StageReport) -> String {
+    let StageReport { primary_ms, direct_ms, ambient_ms, filter_ms, total_ms } = times;
+    format!(
+        "{total_ms:.1} ms: primary {primary_ms:.1}, direct {direct_ms:.1}, ambient {ambient_ms:.1}, filter {filter_ms:.1}"
+    )
+}
+
+/// Rays by type in a line.
+#[must_use]
+pub fn rays_line(rays: &RayReport) -> String {
+    let RayCounts { primary, ambient, chord, shadow } = rays.by_type;
+    format!(
+        "{}: primary {}, ambient {}, chord {}, shadow {}; {:.1} million a second",
+        grouped(rays.total),
+        grouped(primary),
+        grouped(ambient),
+        grouped(chord),
+        grouped(shadow),
+        rays.mrays_per_s
+    )
+}
+
+/// `report` as JSON over several lines, with a newline.
+pub fn json(report: &impl Serialize) -> anyhow::Result<String> {
+    Ok(serde_json::to_string_pretty(report)? + "\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_readable() {
+        assert_eq!(grouped(0), "0");
+        assert_eq!(grouped(999), "999");
+        assert_eq!(grouped(1_234_567), "1 234 567");
+        assert_eq!(bytes(27_000_000), "27.0 MB");
+        assert_eq!(milliseconds(Duration::from_nanos(1_234_567)), 1.235);
+    }
+}

@@ -1,0 +1,75 @@
+//! From the word on the command line to a scene in memory.
+
+use std::{
+    path::Path,
+    time::{Duration, Instant},
+};
+
+use ambray::scene::{LoadOptions, Scene, SceneChoice, load_with};
+use anyhow::bail;
+
+use crate::{failure::with_hint, terminal};
+
+/// The word for the built-in scene.
+pub const BUILT_IN: &str = "atrium";
+
+/// A scene with its history.
+#[derive(Debug)]
+pub struct Source {
+    /// The scene.
+    pub scene: Scene,
+    /// Path of the file, or `atrium`.
+    pub path: String,
+    /// What the loader had to say.
+    pub warnings: Vec<String>,
+    /// Wall time to load it.
+    pub load_time: Duration,
+}
+
+/// Loads the scene at `path`, or the built-in one, and shows the warnings.
+pub fn open(path: &Path, gltf_scene: Option<&str>) -> anyhow::Result<Source> {
+    let start = Instant::now();
+    let built_in = path == Path::new(BUILT_IN);
+    let is_obj = path.extension().is_some_and(|ext| ext.eq_ignore_ascii_case("obj"));
+    if gltf_scene.is_some() && (built_in || is_obj) {
+        bail!("--gltf-scene is not allowed with {}: only glTF files hold several scenes", path.display());
+    }
+    let (scene, warnings) = if built_in {
+        (built_in_scene(), Vec::new())
+    } else {
+        let loaded = load_with(path, &LoadOptions { scene: gltf_scene.map(choice) }).map_err(|error| {
+            if path.exists() {
+                return error.into();
+            }
+            with_hint(error, "SCENE is a .gltf, .glb or .obj file, or the word atrium for the built-in scene")
+        })?;
+        (loaded.scene, loaded.warnings)
+    };
+    for warning in &warnings {
+        terminal::warn(&format!("{}: {warning}", path.display()));
+    }
+    Ok(Source { scene, path: path.display().to_string(), warnings, load_time: start.elapsed() })
+}
+
+fn choice(name: &str) -> SceneChoice {
+    name.parse().map_or_else(|_| SceneChoice::Name(name.to_owned()), SceneChoice::Index)
+}
+
+fn built_in_scene() -> Scene {
+    use ambray::scene::{Instance, Material, Mesh};
+    use glam::{Affine3A, Vec3};
+    let corner = |x: f32, z: f32| Vec3::new(x, 0.0, z);
+    let positions = vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+    let mesh = Mesh { positions, triangles: vec![[0, 2, 1], [0, 3, 2]], ..Mesh::default() };
+    let wall = Affine3A::from_rotation_x(1.5) * Affine3A::from_translation(Vec3::new(0.0, 0.0, -1.0));
+    Scene {
+        name: BUILT_IN.to_owned(),
+        meshes: vec![mesh],
+        instances: vec![
+            Instance { mesh: 0, world_from_object: Affine3A::IDENTITY },
+            Instance { mesh: 0, world_from_object: wall },
+        ],
+        materials: vec![Material::default()],
+        ..Scene::default()
+    }
+}
