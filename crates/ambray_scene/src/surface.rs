@@ -1,20 +1,555 @@
 //! From a hit to the attributes of the surface there.
-//!
-//! NOTE to the loader engineer (remove when written): the CPU backend is coded against exactly this API:
-//! `Surfaces::new(scene: Arc<Scene>) -> Surfaces` (owns the Arc, no lifetime, Debug, Sync),
-//! `surfaces.surface_at(&Hit, width: f32) -> SurfacePoint` with `.facing(ray_direction: Vec3) -> SurfacePoint`,
-//! `surfaces.diffuse_at(&Hit, width: f32) -> DiffusePoint { position, geometric_normal, albedo, emission }`,
-//! `surfaces.is_opaque(mesh: u32) -> bool`, `surfaces.accepts(instance: u32, triangle: u32, u: f32, v: f32, seed: u32) -> bool`.
-//! SurfacePoint fields: position, geometric_normal, smooth_normal, shading_normal, albedo, emission, material: u32, unlit: bool.
-// STUB until then: replace all of it.
-#![allow(missing_docs)]
-use std::sync::Arc; use glam::Vec3; use crate::Scene; use ambray_core::trace::Hit;
-#[derive(Debug)] pub struct Surfaces{scene:Arc<Scene>}
-#[derive(Debug,Clone,Copy)] pub struct SurfacePoint{pub position:Vec3,pub geometric_normal:Vec3,pub smooth_normal:Vec3,pub shading_normal:Vec3,pub albedo:Vec3,pub emission:Vec3,pub material:u32,pub unlit:bool}
-#[derive(Debug,Clone,Copy)] pub struct DiffusePoint{pub position:Vec3,pub geometric_normal:Vec3,pub albedo:Vec3,pub emission:Vec3}
-impl Surfaces{ pub fn new(scene:Arc<Scene>)->Self{Self{scene}} 
- pub fn is_opaque(&self,_:u32)->bool{true} pub fn accepts(&self,_:u32,_:u32,_:f32,_:f32,_:u32)->bool{true}
- pub fn diffuse_at(&self,h:&Hit,_:f32)->DiffusePoint{ let i=&self.scene.instances[h.instance as usize]; let m=&self.scene.meshes[i.mesh as usize]; let [a,b,c]=m.corners(h.triangle).map(|p|i.world_from_object.transform_point3(p)); let n=(b-a).cross(c-a).normalize();
-   DiffusePoint{position:a*(1.0-h.u-h.v)+b*h.u+c*h.v,geometric_normal:n,albedo:self.scene.materials[m.material as usize].base_color.truncate(),emission:Vec3::ZERO} }
- pub fn surface_at(&self,h:&Hit,w:f32)->SurfacePoint{let d=self.diffuse_at(h,w); SurfacePoint{position:d.position,geometric_normal:d.geometric_normal,smooth_normal:d.geometric_normal,shading_normal:d.geometric_normal,albedo:d.albedo,emission:d.emission,material:self.scene.meshes[self.scene.instances[h.instance as usize].mesh as usize].material,unlit:false}} }
-impl SurfacePoint{ pub fn facing(self,d:Vec3)->Self{ if self.geometric_normal.dot(d)>0.0 {Self{geometric_normal:-self.geometric_normal,smooth_normal:-self.smooth_normal,shading_normal:-self.shading_normal,..self}} else {self} } }
+
+use std::sync::Arc;
+
+use ambray_core::trace::{Hit, alpha_threshold};
+use glam::{Mat3A, Vec2, Vec3, Vec3A, Vec4};
+
+use crate::{AlphaMode, Instance, Material, Mesh, Scene, TextureRef};
+
+/// Answers questions about points on the surfaces of a scene.
+///
+/// Hits must come from that scene; others panic or answer about another point.
+#[derive(Clone, Debug)]
+pub struct Surfaces {
+    scene: Arc<Scene>,
+    /// One an instance.
+    frames: Vec<Frame>,
+    /// One a mesh: whether all of it is there for all rays.
+    opaque: Vec<bool>,
+}
+
+/// What placing an instance does to directions.
+#[derive(Clone, Copy, Debug)]
+struct Frame {
+    /// Turns normals; does not keep their length.
+    normal_from_object: Mat3A,
+    /// -1 where the placement mirrors, which turns the winding of triangles around, else 1.
+    side: f32,
+}
+
+/// A point on a surface as a camera sees it. Positions and directions are in world space, colours linear RGB.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfacePoint {
+    /// The point, interpolated from the triangle's corners.
+    pub position: Vec3,
+    /// Unit normal of the triangle, on the side from which its corners run counter-clockwise before mirroring.
+    pub geometric_normal: Vec3,
+    /// Unit interpolated vertex normal; the geometric one where there is none.
+    pub smooth_normal: Vec3,
+    /// The smooth normal bent by the normal map, unit.
+    pub shading_normal: Vec3,
+    /// Base colour × texture × vertex colour.
+    pub albedo: Vec3,
+    /// Emitted radiance.
+    pub emission: Vec3,
+    /// Index into [`Scene::materials`].
+    pub material: u32,
+    /// Whether the albedo is to be shown without light.
+    pub unlit: bool,
+}
+
+/// A point on a surface as far as light bouncing off it is concerned; see [`SurfacePoint`] for the fields.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DiffusePoint {
+    /// The point.
+    pub position: Vec3,
+    /// Unit normal of the triangle.
+    pub geometric_normal: Vec3,
+    /// Base colour × texture × vertex colour.
+    pub albedo: Vec3,
+    /// Emitted radiance.
+    pub emission: Vec3,
+}
+
+impl SurfacePoint {
+    /// The same point seen along `direction`: the geometric normal is turned against it, the other two to the side of
+    /// the geometric one.
+    #[must_use]
+    pub fn facing(self, direction: Vec3) -> Self {
+        let geometric_normal = towards(self.geometric_normal, -direction);
+        Self {
+            geometric_normal,
+            smooth_normal: towards(self.smooth_normal, geometric_normal),
+            shading_normal: towards(self.shading_normal, geometric_normal),
+            ..self
+        }
+    }
+}
+
+impl DiffusePoint {
+    /// The same point seen along `direction`: the normal is turned against it.
+    #[must_use]
+    pub fn facing(self, direction: Vec3) -> Self {
+        Self { geometric_normal: towards(self.geometric_normal, -direction), ..self }
+    }
+}
+
+/// `v` or `-v`, whichever is on the side of `side`.
+fn towards(v: Vec3, side: Vec3) -> Vec3 {
+    if v.dot(side) < 0.0 { -v } else { v }
+}
+
+impl Surfaces {
+    /// Prepares `scene`: one pass over its instances, and over the alpha of materials that are not opaque.
+    ///
+    /// # Panics
+    /// If the scene's indices refer to what is not there.
+    #[must_use]
+    pub fn new(scene: Arc<Scene>) -> Self {
+        let frame = |instance: &Instance| {
+            let m = instance.world_from_object.matrix3;
+            let side = if m.determinant() < 0.0 { -1.0 } else { 1.0 };
+            Frame { normal_from_object: normal_matrix(m), side }
+        };
+        let frames = scene.instances.iter().map(frame).collect();
+        let opaque = is_opaque_by_mesh(&scene);
+        Self { scene, frames, opaque }
+    }
+
+    /// The scene that was given.
+    #[must_use]
+    pub fn scene(&self) -> &Arc<Scene> {
+        &self.scene
+    }
+
+    /// Whether every ray sees every triangle of `mesh`: its material is opaque, or nothing of it is transparent.
+    #[must_use]
+    pub fn is_opaque(&self, mesh: u32) -> bool {
+        self.opaque[mesh as usize]
+    }
+
+    /// Alpha at a point given by barycentrics as in [`Hit`]: base alpha × texture × vertex alpha.
+    #[must_use]
+    pub fn alpha(&self, instance: u32, triangle: u32, u: f32, v: f32) -> f32 {
+        let mesh = self.mesh(instance);
+        self.alpha_of(mesh, &self.scene.materials[mesh.material as usize], triangle, u, v)
+    }
+
+    /// Whether a ray with this `seed` sees the point given by barycentrics as in [`Hit`].
+    #[must_use]
+    pub fn accepts(&self, instance: u32, triangle: u32, u: f32, v: f32, seed: u32) -> bool {
+        let mesh = self.mesh(instance);
+        let material = &self.scene.materials[mesh.material as usize];
+        match material.alpha_mode {
+            AlphaMode::Opaque => true,
+            AlphaMode::Mask(cutoff) => self.alpha_of(mesh, material, triangle, u, v) >= cutoff,
+            AlphaMode::Blend => {
+                self.alpha_of(mesh, material, triangle, u, v) > alpha_threshold(seed, instance)
+            }
+        }
+    }
+
+    /// The surface at `hit`, its textures averaged over a footprint of `width` scene units; 0 reads them finest.
+    #[must_use]
+    pub fn surface_at(&self, hit: &Hit, width: f32) -> SurfacePoint {
+        let at = At::new(self, hit, width);
+        let smooth_normal = at.smooth_normal();
+        SurfacePoint {
+            position: at.position(),
+            geometric_normal: at.geometric_normal,
+            smooth_normal,
+            shading_normal: at.shading_normal(smooth_normal),
+            albedo: at.albedo(),
+            emission: at.emission(),
+            material: at.mesh.material,
+            unlit: at.material.unlit,
+        }
+    }
+
+    /// The part of [`surface_at`](Self::surface_at) that bounced light needs, for about half its cost.
+    #[must_use]
+    pub fn diffuse_at(&self, hit: &Hit, width: f32) -> DiffusePoint {
+        let at = At::new(self, hit, width);
+        DiffusePoint {
+            position: at.position(),
+            geometric_normal: at.geometric_normal,
+            albedo: at.albedo(),
+            emission: at.emission(),
+        }
+    }
+
+    fn mesh(&self, instance: u32) -> &Mesh {
+        &self.scene.meshes[self.scene.instances[instance as usize].mesh as usize]
+    }
+
+    fn alpha_of(&self, mesh: &Mesh, material: &Material, triangle: u32, u: f32, v: f32) -> f32 {
+        let corners = mesh.triangles[triangle as usize];
+        let weights = [1.0 - u - v, u, v];
+        let mut alpha = material.base_color.w;
+        if let Some(texture) = &material.base_color_texture {
+            let uv = texture.transform.transform_point2(weigh(mesh_uvs(mesh, texture, corners), weights));
+            let read = self.scene.textures[texture.texture as usize];
+            alpha *= read.sampler.alpha_at(&self.scene.images[read.image as usize], uv);
+        }
+        if !mesh.colors.is_empty() {
+            let [a, b, c] = corners.map(|i| mesh.colors[i as usize].w);
+            alpha *= a * weights[0] + b * weights[1] + c * weights[2];
+        }
+        alpha
+    }
+}
+
+/// A hit with what all its attributes need.
+struct At<'s> {
+    scene: &'s Scene,
+    frame: &'s Frame,
+    instance: &'s Instance,
+    mesh: &'s Mesh,
+    material: &'s Material,
+    /// Vertex indices.
+    corners: [u32; 3],
+    /// World space.
+    points: [Vec3A; 3],
+    /// Barycentric weights of the corners.
+    weights: [f32; 3],
+    geometric_normal: Vec3,
+    /// Footprint in the unit of triangle edges: its width over the square root of twice the triangle's area.
+    relative_width: f32,
+}
+
+impl<'s> At<'s> {
+    fn new(surfaces: &'s Surfaces, hit: &Hit, width: f32) -> Self {
+        let scene = &*surfaces.scene;
+        let (instance, frame) =
+            (&scene.instances[hit.instance as usize], &surfaces.frames[hit.instance as usize]);
+        let mesh = &scene.meshes[instance.mesh as usize];
+        let corners = mesh.triangles[hit.triangle as usize];
+        let points =
+            corners.map(|i| instance.world_from_object.transform_point3a(mesh.positions[i as usize].into()));
+        let (e1, e2) = (points[1] - points[0], points[2] - points[0]);
+        // Edges of tiny triangles would vanish when multiplied; scaled to unit size they do not.
+        let scale = e1.abs().max(e2.abs()).max_element();
+        let normal = (e1 / scale).cross(e2 / scale);
+        let length = normal.length();
+        let mut at = Self {
+            scene,
+            frame,
+            instance,
+            mesh,
+            material: &scene.materials[mesh.material as usize],
+            corners,
+            points,
+            weights: [1.0 - hit.u - hit.v, hit.u, hit.v],
+            geometric_normal: (normal * (frame.side / length)).into(),
+            relative_width: width / (scale * length.sqrt()),
+        };
+        // A triangle without area has no normal of its own.
+        if !at.geometric_normal.is_finite() {
+            at.geometric_normal = at.vertex_normal().unwrap_or(Vec3::Y);
+            at.relative_width = 0.0;
+        }
+        at
+    }
+
+    fn position(&self) -> Vec3 {
+        // From the first corner along the edges: exact where edges are short and far from the origin.
+        let [a, b, c] = self.points;
+        (a + (b - a) * self.weights[1] + (c - a) * self.weights[2]).into()
+    }
+
+    fn vertex_normal(&self) -> Option<Vec3> {
+        if self.mesh.normals.is_empty() {
+            return None;
+        }
+        let [a, b, c] = self.corners.map(|i| Vec3A::from(self.mesh.normals[i as usize]));
+        let object = a * self.weights[0] + b * self.weights[1] + c * self.weights[2];
+        let world: Vec3 = (self.frame.normal_from_object * object).into();
+        // The matrix may be tiny or huge; a direction is left as long as a component is.
+        (world / world.abs().max_element()).try_normalize()
+    }
+
+    fn smooth_normal(&self) -> Vec3 {
+        self.vertex_normal().unwrap_or(self.geometric_normal)
+    }
+
+    /// `smooth` bent by the normal map (glTF 2.0 §3.9.3 and appendix B.4).
+    fn shading_normal(&self, smooth: Vec3) -> Vec3 {
+        let Some(texture) = &self.material.normal_texture else { return smooth };
+        let Some((tangent, bitangent)) = self.tangents(smooth, texture) else { return smooth };
+        let texel = self.read(texture).truncate() * 2.0 - 1.0;
+        let bent = texel * Vec3::new(self.material.normal_scale, self.material.normal_scale, 1.0);
+        (tangent * bent.x + bitangent * bent.y + smooth * bent.z).try_normalize().unwrap_or(smooth)
+    }
+
+    /// Unit tangent and bitangent orthogonal to `smooth`: the directions of the map's red and green.
+    fn tangents(&self, smooth: Vec3, texture: &TextureRef) -> Option<(Vec3, Vec3)> {
+        let (along, side) = if self.mesh.tangents.is_empty() {
+            self.edge_tangent(texture)?
+        } else {
+            let [a, b, c] = self.corners.map(|i| self.mesh.tangents[i as usize]);
+            let object = a * self.weights[0] + b * self.weights[1] + c * self.weights[2];
+            let world = self.instance.world_from_object.transform_vector3(object.truncate());
+            (world, self.frame.side * if object.w < 0.0 { -1.0 } else { 1.0 })
+        };
+        let along = along / along.abs().max_element();
+        let tangent = along.reject_from_normalized(smooth).try_normalize()?;
+        Some((tangent, smooth.cross(tangent) * side))
+    }
+
+    /// Direction in which u grows over the triangle, and the sign that `cross(normal, it)` needs to point against v.
+    fn edge_tangent(&self, texture: &TextureRef) -> Option<(Vec3, f32)> {
+        let [a, b, c] = mesh_uvs(self.mesh, texture, self.corners);
+        let (d1, d2) = (b - a, c - a);
+        let det = d1.perp_dot(d2);
+        let (e1, e2) = (self.points[1] - self.points[0], self.points[2] - self.points[0]);
+        let along = (e1 * d2.y - e2 * d1.y) * det.signum();
+        // Upright texture coordinates run clockwise where corners run counter-clockwise, since v points down.
+        let side = if det < 0.0 { self.frame.side } else { -self.frame.side };
+        (det != 0.0 && along.is_finite()).then(|| (along.into(), side))
+    }
+
+    fn albedo(&self) -> Vec3 {
+        let mut color = self.material.base_color.truncate();
+        if let Some(texture) = &self.material.base_color_texture {
+            color *= self.read(texture).truncate();
+        }
+        if !self.mesh.colors.is_empty() {
+            let [a, b, c] = self.corners.map(|i| self.mesh.colors[i as usize].truncate());
+            color *= a * self.weights[0] + b * self.weights[1] + c * self.weights[2];
+        }
+        color
+    }
+
+    fn emission(&self) -> Vec3 {
+        match &self.material.emission_texture {
+            Some(texture) if self.material.emission != Vec3::ZERO => {
+                self.material.emission * self.read(texture).truncate()
+            }
+            _ => self.material.emission,
+        }
+    }
+
+    /// The texture's value over the footprint.
+    fn read(&self, texture: &TextureRef) -> Vec4 {
+        let uvs = mesh_uvs(self.mesh, texture, self.corners).map(|uv| texture.transform.transform_point2(uv));
+        // Lengths grow from the surface to the texture by the square root of what areas grow by.
+        let uv_area = (uvs[1] - uvs[0]).perp_dot(uvs[2] - uvs[0]).abs();
+        let read = self.scene.textures[texture.texture as usize];
+        let image = &self.scene.images[read.image as usize];
+        read.sampler.sample(image, weigh(uvs, self.weights), self.relative_width * uv_area.sqrt())
+    }
+}
+
+/// Texture coordinates of the corners, zero if the mesh lacks the set.
+fn mesh_uvs(mesh: &Mesh, texture: &TextureRef, corners: [u32; 3]) -> [Vec2; 3] {
+    match mesh.uvs.get(texture.uv_set as usize) {
+        Some(uvs) => corners.map(|i| uvs[i as usize]),
+        None => [Vec2::ZERO; 3],
+    }
+}
+
+fn weigh([a, b, c]: [Vec2; 3], weights: [f32; 3]) -> Vec2 {
+    a * weights[0] + b * weights[1] + c * weights[2]
+}
+
+/// Matrix that turns normals where `m` turns points: the inverse transpose up to a positive factor, defined even where
+/// `m` has no inverse.
+pub(crate) fn normal_matrix(m: Mat3A) -> Mat3A {
+    // Scaled to unit size, since products of tiny or huge entries leave the range of numbers.
+    let size = m.x_axis.abs().max(m.y_axis.abs()).max(m.z_axis.abs()).max_element();
+    let m = if size > 0.0 { m * (1.0 / size) } else { m };
+    let side = if m.determinant() < 0.0 { -1.0 } else { 1.0 };
+    Mat3A::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis)) * side
+}
+
+fn is_opaque_by_mesh(scene: &Scene) -> Vec<bool> {
+    // Least alpha of each material without vertex colours; infinite for those that ignore alpha.
+    let least = |material: &Material| {
+        let texture = material.base_color_texture.as_ref().map_or(1.0, |texture| {
+            let image = scene.textures[texture.texture as usize].image;
+            scene.images[image as usize].least_alpha()
+        });
+        if material.alpha_mode == AlphaMode::Opaque { f32::INFINITY } else { material.base_color.w * texture }
+    };
+    let least: Vec<f32> = scene.materials.iter().map(least).collect();
+    let is_opaque = |mesh: &Mesh| {
+        let of_vertices = || mesh.colors.iter().map(|color| color.w).fold(1.0, f32::min);
+        let alpha = || least[mesh.material as usize] * of_vertices();
+        match scene.materials[mesh.material as usize].alpha_mode {
+            AlphaMode::Opaque => true,
+            AlphaMode::Mask(cutoff) => alpha() >= cutoff.max(ROUNDING),
+            // The threshold is below 1.
+            AlphaMode::Blend => alpha() >= 1.0,
+        }
+    };
+    scene.meshes.iter().map(is_opaque).collect()
+}
+
+/// Interpolation may round an alpha of zero below zero, so a cutoff of zero is decided point by point.
+const ROUNDING: f32 = 1e-6;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Image, Sampler, Texture, Wrap};
+    use glam::{Affine2, Affine3A, Quat};
+
+    /// One triangle (0,0,0), (1,0,0), (0,1,0) with upright texture coordinates.
+    fn mesh() -> Mesh {
+        Mesh {
+            positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
+            uvs: vec![vec![Vec2::new(0.0, 1.0), Vec2::ONE, Vec2::ZERO]],
+            triangles: vec![[0, 1, 2]],
+            ..Mesh::default()
+        }
+    }
+
+    fn surfaces(mesh: Mesh, material: Material, images: Vec<Image>, placement: Affine3A) -> Surfaces {
+        let sampler = Sampler { wrap: [Wrap::Clamp; 2], ..Sampler::default() };
+        let textures = (0..images.len() as u32).map(|image| Texture { image, sampler }).collect();
+        let instances = vec![Instance { mesh: 0, world_from_object: placement }];
+        let materials = vec![material];
+        Surfaces::new(Arc::new(Scene {
+            meshes: vec![mesh],
+            instances,
+            materials,
+            textures,
+            images,
+            ..Scene::default()
+        }))
+    }
+
+    const HIT: Hit = Hit { t: 1.0, u: 0.25, v: 0.5, instance: 0, triangle: 0 };
+
+    fn texture() -> Option<TextureRef> {
+        Some(TextureRef { texture: 0, uv_set: 0, transform: Affine2::IDENTITY })
+    }
+
+    #[track_caller]
+    fn assert_near(a: Vec3, b: Vec3) {
+        assert!(a.abs_diff_eq(b, 1e-5), "{a} is not {b}");
+    }
+
+    #[test]
+    fn position_and_normals_follow_the_placement() {
+        let mesh = Mesh { normals: vec![Vec3::new(0.6, 0.0, 0.8); 3], ..mesh() };
+        let plain =
+            surfaces(mesh.clone(), Material::default(), vec![], Affine3A::IDENTITY).surface_at(&HIT, 0.0);
+        assert_near(plain.position, Vec3::new(0.25, 0.5, 0.0));
+        assert_near(plain.geometric_normal, Vec3::Z);
+        assert_near(plain.smooth_normal, Vec3::new(0.6, 0.0, 0.8));
+        assert_eq!(plain.shading_normal, plain.smooth_normal);
+
+        // Normals of a surface stretched along x lean away from x.
+        let stretch = Affine3A::from_scale(Vec3::new(2.0, 1.0, 1.0));
+        let point = surfaces(mesh.clone(), Material::default(), vec![], stretch).surface_at(&HIT, 0.0);
+        assert_near(point.smooth_normal, Vec3::new(0.3, 0.0, 0.8).normalize());
+
+        // A mirror keeps the front in front.
+        let mirror = Affine3A::from_scale(Vec3::new(-1.0, 1.0, 1.0));
+        let point = surfaces(mesh, Material::default(), vec![], mirror).surface_at(&HIT, 0.0);
+        assert_near(point.position, Vec3::new(-0.25, 0.5, 0.0));
+        assert_near(point.geometric_normal, Vec3::Z);
+        assert_near(point.smooth_normal, Vec3::new(-0.6, 0.0, 0.8));
+    }
+
+    #[test]
+    fn scale_does_not_matter() {
+        let mesh = Mesh { normals: vec![Vec3::Z; 3], ..mesh() };
+        for scale in [1e-12, 1e-6, 1e6, 1e12] {
+            let m = Affine3A::from_scale(Vec3::splat(scale));
+            let point = surfaces(mesh.clone(), Material::default(), vec![], m).surface_at(&HIT, 0.0);
+            assert_near(point.geometric_normal, Vec3::Z);
+            assert_near(point.smooth_normal, Vec3::Z);
+        }
+    }
+
+    #[test]
+    fn normals_turn_towards_the_viewer() {
+        let mesh = Mesh { normals: vec![Vec3::new(0.0, 0.6, 0.8); 3], ..mesh() };
+        let point = surfaces(mesh, Material::default(), vec![], Affine3A::IDENTITY).surface_at(&HIT, 0.0);
+        assert_eq!(point.facing(Vec3::NEG_Z), point);
+        let behind = point.facing(Vec3::Z);
+        assert_eq!(behind.geometric_normal, -point.geometric_normal);
+        assert_eq!(behind.smooth_normal, -point.smooth_normal);
+    }
+
+    #[test]
+    fn degenerate_triangles_have_normals() {
+        let mut mesh = mesh();
+        mesh.positions[2] = Vec3::X;
+        let point = surfaces(mesh, Material::default(), vec![], Affine3A::IDENTITY).surface_at(&HIT, 1.0);
+        assert_eq!((point.geometric_normal, point.smooth_normal), (Vec3::Y, Vec3::Y));
+    }
+
+    #[track_caller]
+    fn check_normal_map(mesh: Mesh, placement: Affine3A, expected: Vec3) {
+        // Red 0.2, green 0.4, blue up.
+        let image = Image::new(String::new(), 1, 1, vec![[153, 178, 242, 255]], false);
+        let material = Material { normal_texture: texture(), ..Material::default() };
+        let point = surfaces(mesh, material, vec![image], placement).surface_at(&HIT, 0.0);
+        let error = (point.shading_normal - expected).abs().max_element();
+        assert!(error < 5e-3, "{} is not {expected}", point.shading_normal);
+    }
+
+    #[test]
+    fn normal_maps_with_and_without_tangents() {
+        let up = Vec3::new(0.2, 0.396, 0.898).normalize();
+        let with_tangents =
+            Mesh { normals: vec![Vec3::Z; 3], tangents: vec![Vec4::new(1.0, 0.0, 0.0, 1.0); 3], ..mesh() };
+        let turned = Affine3A::from_quat(Quat::from_rotation_y(0.7));
+        let mirror = Affine3A::from_scale(Vec3::new(-1.0, 1.0, 1.0));
+        for mesh in [mesh(), with_tangents] {
+            check_normal_map(mesh.clone(), Affine3A::IDENTITY, up);
+            check_normal_map(mesh.clone(), turned, turned.transform_vector3(up));
+            check_normal_map(mesh.clone(), mirror, mirror.transform_vector3(up));
+        }
+        // Texture coordinates that run backwards turn red around.
+        let mut backwards = mesh();
+        backwards.uvs[0].iter_mut().for_each(|uv| uv.x = -uv.x);
+        check_normal_map(backwards, Affine3A::IDENTITY, up * Vec3::new(-1.0, 1.0, 1.0));
+    }
+
+    #[test]
+    fn albedo_is_a_product_and_coarsens_with_the_footprint() {
+        let texels = vec![[255, 0, 0, 255], [0, 0, 255, 255], [255, 0, 0, 255], [0, 0, 255, 255]];
+        let image = Image::new(String::new(), 4, 1, texels, true);
+        let material = Material {
+            base_color: Vec4::new(0.5, 1.0, 1.0, 1.0),
+            base_color_texture: texture(),
+            emission: Vec3::ONE,
+            emission_texture: texture(),
+            ..Material::default()
+        };
+        let mesh = Mesh { colors: vec![Vec4::new(0.5, 1.0, 0.25, 1.0); 3], ..mesh() };
+        let surfaces = surfaces(mesh, material, vec![image], Affine3A::from_scale(Vec3::splat(8.0)));
+        let hit = Hit { u: 0.125, v: 0.2, ..HIT }; // centre of the first texel
+        let fine = surfaces.diffuse_at(&hit, 0.0);
+        assert_near(fine.albedo, Vec3::new(0.25, 0.0, 0.0));
+        assert_near(fine.emission, Vec3::X);
+        // The triangle's texture spans 8 units: a footprint of 8 averages all of it.
+        let coarse = surfaces.diffuse_at(&hit, 8.0);
+        assert!(
+            (coarse.emission - Vec3::new(0.5, 0.0, 0.5)).abs().max_element() < 5e-3,
+            "{}",
+            coarse.emission
+        );
+        let point = surfaces.surface_at(&hit, 8.0);
+        assert_eq!((point.albedo, point.emission), (coarse.albedo, coarse.emission));
+    }
+
+    #[test]
+    fn alpha_modes() {
+        let sheer = Image::new(String::new(), 1, 1, vec![[255, 255, 255, 128]], true);
+        let make = |alpha_mode, base: f32, image: Option<Image>| {
+            let base_color = Vec4::new(1.0, 1.0, 1.0, base);
+            let base_color_texture = image.as_ref().and(texture());
+            let material = Material { alpha_mode, base_color, base_color_texture, ..Material::default() };
+            surfaces(mesh(), material, image.into_iter().collect(), Affine3A::IDENTITY)
+        };
+        let share = |surfaces: &Surfaces| {
+            (0..4096).filter(|&seed| surfaces.accepts(0, 0, 0.2, 0.2, seed)).count() as f32 / 4096.0
+        };
+        let opaque = make(AlphaMode::Opaque, 0.0, Some(sheer.clone()));
+        assert!(opaque.is_opaque(0) && share(&opaque) == 1.0);
+        let mask = make(AlphaMode::Mask(0.5), 1.0, Some(sheer.clone()));
+        assert!((mask.alpha(0, 0, 0.2, 0.2) - 128.0 / 255.0).abs() < 1e-6);
+        assert!(mask.is_opaque(0) && share(&mask) == 1.0);
+        let cut = make(AlphaMode::Mask(0.6), 1.0, Some(sheer.clone()));
+        assert!(!cut.is_opaque(0) && share(&cut) == 0.0);
+        let blend = make(AlphaMode::Blend, 0.5, Some(sheer));
+        assert!(!blend.is_opaque(0) && (share(&blend) - 0.251).abs() < 0.02, "{}", share(&blend));
+        assert!(make(AlphaMode::Blend, 1.0, None).is_opaque(0));
+    }
+}

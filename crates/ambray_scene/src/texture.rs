@@ -2,6 +2,8 @@
 
 use glam::{Vec2, Vec4};
 
+use crate::{mip, srgb};
+
 /// A decoded image with its mip chain, RGBA with 8 bits a channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Image {
@@ -77,22 +79,247 @@ pub enum Filter {
 impl Image {
     /// Builds the mip chain over `texels` (row by row from the top) of a `width` × `height` image.
     ///
-    /// Levels are averaged in linear light where `srgb` says that the texels are encoded, and weighted by alpha.
+    /// Levels of sRGB images are averaged in linear light and weighted by alpha, others as they are.
     ///
     /// # Panics
     /// If `texels` does not hold `width` × `height` entries or the size is zero.
     #[must_use]
     pub fn new(name: String, width: u32, height: u32, texels: Vec<[u8; 4]>, srgb: bool) -> Self {
         assert!(width > 0 && height > 0 && texels.len() == width as usize * height as usize, "image size");
-        Self { name, levels: vec![ImageLevel { width, height, texels }], srgb }
+        let mut levels = vec![ImageLevel { width, height, texels }];
+        while let Some(last) = levels.last().filter(|last| last.width.max(last.height) > 1) {
+            let next = mip::half(last, srgb);
+            levels.push(next);
+        }
+        Self { name, levels, srgb }
+    }
+
+    /// Smallest alpha of the full image, in [0, 1]: 1 for opaque images.
+    #[must_use]
+    pub fn least_alpha(&self) -> f32 {
+        let least = self.levels[0].texels.iter().map(|texel| texel[3]).min();
+        f32::from(least.unwrap_or(255)) / 255.0
+    }
+
+    /// Texel of `level` as linear RGBA.
+    fn texel(&self, level: usize, x: usize, y: usize) -> Vec4 {
+        let level = &self.levels[level];
+        let [r, g, b, a] = level.texels[y * level.width as usize + x].map(usize::from);
+        let table = if self.srgb { srgb::decoded() } else { &srgb::UNIT };
+        Vec4::new(table[r], table[g], table[b], srgb::UNIT[a])
     }
 }
 
 impl Sampler {
     /// Linear RGBA at `uv`, for a footprint of `width` texture units (1 = the whole image; 0 reads level 0).
+    ///
+    /// Texel (i, j) has its centre at (i + ½, j + ½) / size. The mip level is log₂(`width` · max(size)); at level 0 and
+    /// below the image is magnified. Each texel is decoded before it is filtered. A `uv` that is not finite reads as 0.
     #[must_use]
     pub fn sample(&self, image: &Image, uv: Vec2, width: f32) -> Vec4 {
-        let _ = (image, uv, width);
-        Vec4::ONE
+        let full = &image.levels[0];
+        let level = (width * full.width.max(full.height) as f32).log2();
+        // Written so that NaN, the level of negative widths, magnifies.
+        if !(level > 0.0) {
+            return self.at_level(image, 0, self.mag, uv);
+        }
+        let last = image.levels.len() - 1;
+        let level = level.min(last as f32);
+        match self.mip {
+            None => self.at_level(image, 0, self.min, uv),
+            Some(Filter::Nearest) => self.at_level(image, (level + 0.5) as usize, self.min, uv),
+            Some(Filter::Linear) => {
+                let (lower, share) = (level as usize, level.fract());
+                let fine = self.at_level(image, lower, self.min, uv);
+                if share == 0.0 {
+                    return fine;
+                }
+                fine.lerp(self.at_level(image, (lower + 1).min(last), self.min, uv), share)
+            }
+        }
+    }
+
+    /// Alpha at `uv` of the full image, magnified: what a ray meets when it tests whether something is there.
+    #[must_use]
+    pub fn alpha_at(&self, image: &Image, uv: Vec2) -> f32 {
+        let level = &image.levels[0];
+        let alpha =
+            |x: usize, y: usize| srgb::UNIT[usize::from(level.texels[y * level.width as usize + x][3])];
+        let [u, v] = self.taps(level, self.mag, uv);
+        let row = |y: usize| {
+            if u.share == 0.0 {
+                alpha(u.first, y)
+            } else {
+                lerp(alpha(u.first, y), alpha(u.second, y), u.share)
+            }
+        };
+        if v.share == 0.0 { row(v.first) } else { lerp(row(v.first), row(v.second), v.share) }
+    }
+
+    fn at_level(&self, image: &Image, level: usize, filter: Filter, uv: Vec2) -> Vec4 {
+        let [u, v] = self.taps(&image.levels[level], filter, uv);
+        let texel = |x: usize, y: usize| image.texel(level, x, y);
+        if filter == Filter::Nearest {
+            return texel(u.first, v.first);
+        }
+        let upper = texel(u.first, v.first).lerp(texel(u.second, v.first), u.share);
+        let lower = texel(u.first, v.second).lerp(texel(u.second, v.second), u.share);
+        upper.lerp(lower, v.share)
+    }
+
+    fn taps(&self, level: &ImageLevel, filter: Filter, uv: Vec2) -> [Taps; 2] {
+        [
+            Taps::new(uv.x, level.width, self.wrap[0], filter),
+            Taps::new(uv.y, level.height, self.wrap[1], filter),
+        ]
+    }
+}
+
+fn lerp(a: f32, b: f32, share: f32) -> f32 {
+    a + (b - a) * share
+}
+
+/// The two texels that a coordinate falls between along one axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Taps {
+    first: usize,
+    second: usize,
+    /// Weight of `second`.
+    share: f32,
+}
+
+impl Taps {
+    fn new(coordinate: f32, size: u32, wrap: Wrap, filter: Filter) -> Self {
+        let x = wrap.reduce(coordinate) * size as f32;
+        match filter {
+            Filter::Nearest => {
+                let texel = wrap.texel(x.floor() as i64, size);
+                Self { first: texel, second: texel, share: 0.0 }
+            }
+            Filter::Linear => {
+                let left = (x - 0.5).floor();
+                let (first, second) = (wrap.texel(left as i64, size), wrap.texel(left as i64 + 1, size));
+                Self { first, second, share: x - 0.5 - left }
+            }
+        }
+    }
+}
+
+impl Wrap {
+    /// The coordinate of the same texel near the unit interval, so that huge ones keep their integer part exact.
+    fn reduce(self, coordinate: f32) -> f32 {
+        if !coordinate.is_finite() {
+            return 0.0;
+        }
+        match self {
+            Self::Repeat => coordinate - coordinate.floor(),
+            Self::Mirror => coordinate - 2.0 * (0.5 * coordinate).floor(),
+            Self::Clamp => coordinate.clamp(-1.0, 2.0),
+        }
+    }
+
+    /// Texel that stands for the one at `index`, which may lie outside the image.
+    fn texel(self, index: i64, size: u32) -> usize {
+        let size = i64::from(size);
+        let inside = match self {
+            Self::Repeat => index.rem_euclid(size),
+            Self::Mirror => {
+                let index = index.rem_euclid(2 * size);
+                if index < size { index } else { 2 * size - 1 - index }
+            }
+            Self::Clamp => index.clamp(0, size - 1),
+        };
+        inside as usize
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A row of linear greys in red; the other channels are 0 and alpha 255.
+    fn row(reds: &[u8]) -> Image {
+        let texels = reds.iter().map(|&r| [r, 0, 0, 255]).collect();
+        Image::new(String::new(), reds.len() as u32, 1, texels, false)
+    }
+
+    #[track_caller]
+    fn check(wrap: Wrap, filter: Filter, u: f32, expected: f32) {
+        let sampler = Sampler { wrap: [wrap; 2], mag: filter, min: filter, mip: None };
+        let red = sampler.sample(&row(&[0, 51, 102, 255]), Vec2::new(u, 0.5), 0.0).x;
+        assert!((red - expected).abs() < 1e-5, "{red} where {expected} was expected");
+    }
+
+    #[test]
+    fn texel_centres_and_borders() {
+        use {Filter::*, Wrap::*};
+        // Texels 0, 0.2, 0.4, 1 with centres at 1/8, 3/8, 5/8, 7/8.
+        check(Repeat, Linear, 0.125, 0.0);
+        check(Repeat, Linear, 0.25, 0.1);
+        check(Repeat, Linear, 0.625, 0.4);
+        check(Repeat, Linear, 0.0, 0.5); // halfway between the last and the first
+        check(Repeat, Linear, 1.0, 0.5);
+        check(Repeat, Linear, -0.125, 1.0);
+        check(Repeat, Linear, 1000.375, 0.2);
+        check(Mirror, Linear, 1.0, 1.0); // the last and its own reflection
+        check(Mirror, Linear, 1.25, 0.7);
+        check(Mirror, Linear, 0.0, 0.0);
+        check(Mirror, Linear, -0.25, 0.1);
+        check(Clamp, Linear, -5.0, 0.0);
+        check(Clamp, Linear, 1.0, 1.0);
+        check(Clamp, Linear, 0.75, 0.7);
+        check(Repeat, Nearest, 0.0, 0.0);
+        check(Repeat, Nearest, 0.249, 0.0);
+        check(Repeat, Nearest, 0.25, 0.2);
+        check(Repeat, Nearest, 1.0, 0.0);
+        check(Repeat, Nearest, -1e-9, 0.0); // 1 - 1e-9 rounds to 1, the next tile
+        check(Clamp, Nearest, 1.0, 1.0);
+        check(Mirror, Nearest, 1.1, 1.0);
+        check(Mirror, Nearest, 2.0, 0.0);
+    }
+
+    #[test]
+    fn odd_coordinates_are_harmless() {
+        for wrap in [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp] {
+            let sampler = Sampler { wrap: [wrap; 2], ..Sampler::default() };
+            for u in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::MIN, 1e-40, -1e-40] {
+                for width in [0.0, f32::NAN, f32::INFINITY, -1.0, 1e-40, 0.3] {
+                    let image = row(&[1, 2, 3]);
+                    assert!(sampler.sample(&image, Vec2::new(u, u), width).is_finite());
+                    assert_eq!(sampler.alpha_at(&image, Vec2::new(u, u)), 1.0);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn footprint_chooses_the_level() {
+        let image = row(&[0, 0, 0, 0, 200, 200, 200, 200]);
+        assert_eq!(image.levels.len(), 4);
+        let uv = Vec2::new(0.0625, 0.5); // centre of the first texel
+        let red = |mip, width: f32| {
+            let sampler = Sampler { wrap: [Wrap::Clamp; 2], mip, ..Sampler::default() };
+            sampler.sample(&image, uv, width).x * 255.0
+        };
+        let linear = Some(Filter::Linear);
+        assert!(red(linear, 0.125).abs() < 1e-3);
+        assert!((red(linear, 1.0) - 100.0).abs() < 1e-3, "the whole image");
+        assert!((red(linear, f32::INFINITY) - 100.0).abs() < 1e-3);
+        // Level 2.5: halfway between level 2 (0, 200; clamped to 0 at this place) and level 3 (100).
+        assert!((red(linear, 2f32.powf(2.5) / 8.0) - 50.0).abs() < 1e-2);
+        assert_eq!(red(Some(Filter::Nearest), 2f32.powf(2.4) / 8.0), 0.0);
+        assert!((red(Some(Filter::Nearest), 2f32.powf(2.6) / 8.0) - 100.0).abs() < 1e-3);
+        assert_eq!(red(None, 1.0), 0.0);
+    }
+
+    #[test]
+    fn srgb_is_decoded_before_filtering() {
+        let texels = vec![[0, 0, 0, 255], [255, 255, 255, 0]];
+        let image = Image::new(String::new(), 2, 1, texels, true);
+        let middle = Sampler::default().sample(&image, Vec2::splat(0.5), 0.0);
+        assert!(middle.abs_diff_eq(Vec4::splat(0.5), 1e-6));
+        assert!((Sampler::default().alpha_at(&image, Vec2::splat(0.5)) - 0.5).abs() < 1e-6);
+        let nearest = Sampler { mag: Filter::Nearest, ..Sampler::default() };
+        assert_eq!(nearest.alpha_at(&image, Vec2::new(0.9, 0.5)), 0.0);
     }
 }

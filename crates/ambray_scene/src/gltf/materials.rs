@@ -58,7 +58,10 @@ fn read_material(
         Some("MASK") => AlphaMode::Mask(cutoff),
         Some("BLEND") => AlphaMode::Blend,
         Some(other) => {
-            return Err(Fault::invalid(format!("{at}.alphaMode"), format!("no such mode: {}", quoted(other))));
+            return Err(Fault::invalid(
+                format!("{at}.alphaMode"),
+                format!("no such mode: {}", quoted(other)),
+            ));
         }
     };
     Ok(Material {

@@ -6,6 +6,7 @@ use glam::{Affine3A, DAffine3, DMat4, Mat3A, Vec3, Vec3A};
 
 use crate::Mesh;
 use crate::error::{Fault, Outcome};
+use crate::surface::normal_matrix;
 
 use super::accessor::Accept;
 use super::document::{Document, missing};
@@ -69,7 +70,7 @@ impl Deformable {
             let m = blend(influences, joints);
             mesh.positions[i] = m.transform_point3(mesh.positions[i]);
             if let Some(normal) = mesh.normals.get_mut(i) {
-                *normal = (cofactor(m.matrix3) * Vec3A::from(*normal)).normalize_or_zero().into();
+                *normal = (normal_matrix(m.matrix3) * Vec3A::from(*normal)).normalize_or_zero().into();
             }
             if let Some(tangent) = mesh.tangents.get_mut(i) {
                 let turned = m.transform_vector3(tangent.truncate()).normalize_or_zero();
@@ -98,12 +99,6 @@ fn blend(influences: &[Influence], joints: &[Affine3A]) -> Affine3A {
         sum.translation += joint.translation * weight;
     }
     sum
-}
-
-/// Matrix that turns normals where `m` turns points: the inverse transpose up to a factor, defined even if `m` is singular.
-pub(super) fn cofactor(m: Mat3A) -> Mat3A {
-    let side = if m.determinant() < 0.0 { -1.0 } else { 1.0 };
-    Mat3A::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis)) * side
 }
 
 /// Joint matrices of skin `index`: world from bind space, for the nodes where `world` puts them.
