@@ -135,6 +135,11 @@ impl Fault {
         Self { kind: Kind::TooLarge, at: at.into(), reason: reason.into() }
     }
 
+    /// What is wrong, without the place.
+    pub(crate) fn reason(&self) -> &str {
+        &self.reason
+    }
+
     /// The public error, now that the file is known.
     pub(crate) fn in_file(self, path: &Path) -> LoadError {
         let Self { kind, at, reason } = self;

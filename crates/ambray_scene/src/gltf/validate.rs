@@ -84,9 +84,6 @@ fn check_buffers(root: &Root) -> Outcome<()> {
             let reason = format!("ends at byte {end} of a {size}-byte buffer");
             return Err(Fault::invalid(format!("bufferViews[{i}]"), reason));
         }
-        if view.byte_length == 0 {
-            return Err(Fault::invalid(format!("bufferViews[{i}].byteLength"), "0, at least 1 is needed"));
-        }
         if view.byte_stride.is_some_and(|stride| !stride.is_multiple_of(4) && stride != 1 && stride != 2) {
             // Strides of 1 and 2 occur in files of the wild where indices share the view's rules.
             let reason = format!("{} is not a multiple of 4", view.byte_stride.unwrap_or_default());

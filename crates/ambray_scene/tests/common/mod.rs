@@ -1,0 +1,53 @@
+//! The shared scenes, which are not part of the repository, and scenes made up on the spot.
+#![allow(dead_code, reason = "each test file uses its own part of this")]
+
+use std::path::{Path, PathBuf};
+
+use ambray_scene::{LoadError, Loaded};
+
+/// Folder of the shared scenes; `None`, with a word about it, where it is not there.
+///
+/// # Panics
+/// If it is not there and `AMBRAY_REQUIRE_SCENES=1`.
+pub(crate) fn scenes() -> Option<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/scenes");
+    if folder.is_dir() {
+        return Some(folder);
+    }
+    let required = std::env::var_os("AMBRAY_REQUIRE_SCENES").is_some_and(|value| value == "1");
+    assert!(!required, "AMBRAY_REQUIRE_SCENES=1, but there are no shared scenes");
+    println!("skipped: no shared scenes");
+    None
+}
+
+/// All files below `folder` with one of the `extensions`, sorted.
+pub(crate) fn files(folder: &Path, extensions: &[&str]) -> Vec<PathBuf> {
+    let (mut found, mut pending) = (Vec::new(), vec![folder.to_path_buf()]);
+    while let Some(folder) = pending.pop() {
+        for entry in std::fs::read_dir(&folder).expect("readable folder") {
+            let path = entry.expect("readable entry").path();
+            if path.is_dir() {
+                pending.push(path);
+            } else if path.extension().is_some_and(|ext| extensions.iter().any(|known| ext == *known)) {
+                found.push(path);
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+/// Loads a file of the shared scenes that must be there and load.
+#[track_caller]
+pub(crate) fn load_shared(folder: &Path, name: &str) -> Loaded {
+    ambray_scene::load(&folder.join(name)).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Loads `files`, names and contents, from a folder of their own; the first one is the scene.
+pub(crate) fn load_files(files: &[(&str, &[u8])]) -> Result<Loaded, LoadError> {
+    let dir = tempfile::tempdir().expect("temporary folder");
+    for (name, content) in files {
+        std::fs::write(dir.path().join(name), content).expect("write");
+    }
+    ambray_scene::load(&dir.path().join(files[0].0))
+}
