@@ -1,5 +1,6 @@
 //! One ray through the trees.
 
+use std::marker::PhantomData;
 use std::mem::MaybeUninit;
 
 use ambray_core::trace::{Hit, Ray};
@@ -44,18 +45,34 @@ pub(crate) fn instances<const W: usize, L: Lanes<W>, Q: Query>(
 ) -> bool {
     let (above, below) = stack.split_at_mut(scene.instance_stack);
     let limit = best.t;
-    walk::<W, L>(&scene.shared.nodes, Child::ROOT, prepared, limit, above, |leaf, near| {
-        let placed = &scene.shared.instances[leaf];
-        let object = Prepared::transformed(&placed.object_from_world, ray.origin, ray.direction);
-        if let Some(object) = object {
-            let entry = Entry { instance: Some(placed.instance), near, seed: ray.seed, alpha: scene.alpha };
-            let blas_ = &scene.meshes[placed.blas as usize];
-            if blas::<W, L, Q>(blas_, Child::ROOT, &object, &entry, best, below) {
+    let visitor = Instances::<W, L, Q> { scene, ray, best, stack: below, lanes: PhantomData };
+    walk::<W, L>(&scene.shared.nodes, Child::ROOT, prepared, limit, above, visitor)
+}
+
+/// Leaves of the tree over instances.
+struct Instances<'a, const W: usize, L, Q> {
+    scene: &'a Scene<'a, W>,
+    ray: &'a Ray,
+    best: &'a mut Hit,
+    stack: &'a mut [MaybeUninit<Pending>],
+    lanes: PhantomData<(L, Q)>,
+}
+
+impl<const W: usize, L: Lanes<W>, Q: Query> Leaves for Instances<'_, W, L, Q> {
+    #[inline(always)]
+    fn visit(&mut self, leaf: usize, near: f32) -> Option<f32> {
+        let placed = &self.scene.shared.instances[leaf];
+        let ray = self.ray;
+        if let Some(object) = Prepared::transformed(&placed.object_from_world, ray.origin, ray.direction) {
+            let tree = &self.scene.meshes[placed.blas as usize];
+            let instance = Some(placed.instance);
+            let entry = Entry { instance, near, seed: ray.seed, alpha: self.scene.alpha };
+            if blas::<W, L, Q>(tree, Child::ROOT, &object, &entry, self.best, self.stack) {
                 return None;
             }
         }
-        Some(best.t)
-    })
+        Some(self.best.t)
+    }
 }
 
 /// Visits a tree of triangles below `start`. Returns whether the query is answered.
@@ -72,14 +89,36 @@ pub(crate) fn blas<const W: usize, L: Lanes<W>, Q: Query>(
         return false;
     }
     let limit = best.t;
-    walk::<W, L>(&tree.nodes, start, ray, limit, stack, |leaf, _| {
-        let answered = triangle::block::<W, L, Q>(&tree.blocks[leaf], ray, entry, best);
-        (!answered).then_some(best.t)
-    })
+    let visitor = Blocks::<W, L, Q> { tree, ray, entry, best, lanes: PhantomData };
+    walk::<W, L>(&tree.nodes, start, ray, limit, stack, visitor)
 }
 
-/// Walks the tree front to back and hands each leaf that the ray meets within `limit`, with its near distance, to `leaf`, which
-/// returns the new limit, or `None` to stop. Returns whether it was stopped.
+/// Leaves of a tree of triangles.
+struct Blocks<'a, const W: usize, L, Q> {
+    tree: &'a Blas<W>,
+    ray: &'a Prepared,
+    entry: &'a Entry<'a>,
+    best: &'a mut Hit,
+    lanes: PhantomData<(L, Q)>,
+}
+
+impl<const W: usize, L: Lanes<W>, Q: Query> Leaves for Blocks<'_, W, L, Q> {
+    #[inline(always)]
+    fn visit(&mut self, leaf: usize, _near: f32) -> Option<f32> {
+        let block = &self.tree.blocks[leaf];
+        let answered = triangle::block::<W, L, Q>(block, self.ray, self.entry, self.best);
+        if answered { None } else { Some(self.best.t) }
+    }
+}
+
+/// What happens at leaves. A trait because closures cannot be forced inline, and a kernel's parts must be: only what is
+/// inlined is compiled for the kernel's instruction set.
+trait Leaves {
+    /// Visits a leaf whose box is met at `near`. Returns the new limit of t, or `None` to stop.
+    fn visit(&mut self, leaf: usize, near: f32) -> Option<f32>;
+}
+
+/// Walks the tree front to back through all that the ray meets within `limit`. Returns whether a leaf stopped it.
 #[inline(always)]
 fn walk<const W: usize, L: Lanes<W>>(
     nodes: &[Node<W>],
@@ -87,14 +126,14 @@ fn walk<const W: usize, L: Lanes<W>>(
     ray: &Prepared,
     mut limit: f32,
     stack: &mut [MaybeUninit<Pending>],
-    mut leaf: impl FnMut(usize, f32) -> Option<f32>,
+    mut leaves: impl Leaves,
 ) -> bool {
     let mut top = 0;
     let mut child = start;
     let mut child_near = 0.0;
     loop {
         if child.is_leaf() {
-            match leaf(child.index(), child_near) {
+            match leaves.visit(child.index(), child_near) {
                 Some(new) => limit = new,
                 None => return true,
             }

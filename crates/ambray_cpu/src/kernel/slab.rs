@@ -22,13 +22,26 @@ pub(crate) const WIDEN: f32 = 1.0 + 32.0 / 16_777_216.0;
 /// Children of `node` that the ray meets for t in [0, `limit`], and the near distances of all.
 #[inline(always)]
 pub(crate) fn children<const W: usize, L: Lanes<W>>(node: &Node<W>, ray: &Prepared, limit: f32) -> (u32, L) {
-    let at = |planes: usize, axis: usize| {
-        L::load(&node.planes[planes]).sub(L::splat(ray.origin[axis])).mul(L::splat(ray.reciprocal[axis]))
-    };
-    let near = at(ray.near[0], 0).max(at(ray.near[1], 1)).max(at(ray.near[2], 2).max(L::splat(0.0)));
-    let far = at(ray.far[0], 0).min(at(ray.far[1], 1)).min(at(ray.far[2], 2));
+    let [nx, ny, nz] = [
+        distances::<W, L>(node, ray, ray.near[0], 0),
+        distances::<W, L>(node, ray, ray.near[1], 1),
+        distances::<W, L>(node, ray, ray.near[2], 2),
+    ];
+    let [fx, fy, fz] = [
+        distances::<W, L>(node, ray, ray.far[0], 0),
+        distances::<W, L>(node, ray, ray.far[1], 1),
+        distances::<W, L>(node, ray, ray.far[2], 2),
+    ];
+    let near = nx.max(ny).max(nz.max(L::splat(0.0)));
+    let far = fx.min(fy).min(fz);
     let far = far.mul(L::splat(WIDEN)).min(L::splat(limit));
     (near.le(far), near)
+}
+
+/// Distances to one plane of each child.
+#[inline(always)]
+fn distances<const W: usize, L: Lanes<W>>(node: &Node<W>, ray: &Prepared, plane: usize, axis: usize) -> L {
+    L::load(&node.planes[plane]).sub(L::splat(ray.origin[axis])).mul(L::splat(ray.reciprocal[axis]))
 }
 
 /// Near distance of the box with planes `planes` (lower x, y, z, upper x, y, z), if the ray meets it at t ≥ 0.

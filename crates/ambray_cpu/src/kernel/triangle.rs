@@ -25,20 +25,9 @@ pub(crate) fn block<const W: usize, L: Lanes<W>, Q: Query>(
     entry: &Entry<'_>,
     best: &mut Hit,
 ) -> bool {
-    let [x, y, z] = ray.axes;
-    let [ox, oy, oz] = [ray.origin[x], ray.origin[y], ray.origin[z]].map(L::splat);
-    let [sx, sy, sz] = ray.shear.map(L::splat);
-    let corner = |c: usize| {
-        let depth = L::load(&block.corners[c][z]).sub(oz);
-        (
-            L::load(&block.corners[c][x]).sub(ox).sub(sx.mul(depth)),
-            L::load(&block.corners[c][y]).sub(oy).sub(sy.mul(depth)),
-            depth,
-        )
-    };
-    let (ax, ay, az) = corner(0);
-    let (bx, by, bz) = corner(1);
-    let (cx, cy, cz) = corner(2);
+    let (ax, ay, az) = corner::<W, L>(&block.corners[0], ray);
+    let (bx, by, bz) = corner::<W, L>(&block.corners[1], ray);
+    let (cx, cy, cz) = corner::<W, L>(&block.corners[2], ray);
     let u = cx.mul(by).sub(cy.mul(bx));
     let v = ax.mul(cy).sub(ay.mul(cx));
     let w = bx.mul(ay).sub(by.mul(ax));
@@ -50,7 +39,7 @@ pub(crate) fn block<const W: usize, L: Lanes<W>, Q: Query>(
     }
     // A determinant of 0 gives infinities or NaN, which fail the comparisons.
     let determinant = u.add(v).add(w);
-    let t = u.mul(az).add(v.mul(bz)).add(w.mul(cz)).div(determinant).mul(sz);
+    let t = u.mul(az).add(v.mul(bz)).add(w.mul(cz)).div(determinant).mul(L::splat(ray.shear[2]));
     let mut candidates = inside & zero.lt(t) & t.le(L::splat(best.t));
     if candidates == 0 {
         return false;
@@ -59,12 +48,24 @@ pub(crate) fn block<const W: usize, L: Lanes<W>, Q: Query>(
     while candidates != 0 {
         let lane = candidates.trailing_zeros() as usize;
         candidates &= candidates - 1;
-        let [t, v, w, determinant] = [t, v, w, determinant].map(|x| x[lane % W]);
-        if candidate(block, lane, ray, entry, [t, v, w, determinant], best) && Q::ANY {
+        let covered = [t[lane % W], v[lane % W], w[lane % W], determinant[lane % W]];
+        if candidate(block, lane, ray, entry, covered, best) && Q::ANY {
             return true;
         }
     }
     false
+}
+
+/// One corner of all triangles, translated and sheared.
+#[inline(always)]
+fn corner<const W: usize, L: Lanes<W>>(axes: &[[f32; W]; 3], ray: &Prepared) -> (L, L, L) {
+    let [x, y, z] = ray.axes;
+    let depth = L::load(&axes[z]).sub(L::splat(ray.origin[z]));
+    (
+        L::load(&axes[x]).sub(L::splat(ray.origin[x])).sub(L::splat(ray.shear[0]).mul(depth)),
+        L::load(&axes[y]).sub(L::splat(ray.origin[y])).sub(L::splat(ray.shear[1]).mul(depth)),
+        depth,
+    )
 }
 
 /// What all triangles below an instance share.

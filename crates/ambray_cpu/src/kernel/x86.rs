@@ -89,13 +89,6 @@ impl Lanes<8> for Avx2x8 {
     }
 }
 
-impl Avx2x16 {
-    #[inline(always)]
-    fn zip(self, other: Self, f: impl Fn(Avx2x8, Avx2x8) -> Avx2x8) -> Self {
-        Self(f(self.0, other.0), f(self.1, other.1))
-    }
-}
-
 impl Lanes<16> for Avx2x16 {
     #[inline(always)]
     fn splat(x: f32) -> Self {
@@ -116,27 +109,27 @@ impl Lanes<16> for Avx2x16 {
     }
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        self.zip(other, Avx2x8::add)
+        Self(self.0.add(other.0), self.1.add(other.1))
     }
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        self.zip(other, Avx2x8::sub)
+        Self(self.0.sub(other.0), self.1.sub(other.1))
     }
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
-        self.zip(other, Avx2x8::mul)
+        Self(self.0.mul(other.0), self.1.mul(other.1))
     }
     #[inline(always)]
     fn div(self, other: Self) -> Self {
-        self.zip(other, Avx2x8::div)
+        Self(self.0.div(other.0), self.1.div(other.1))
     }
     #[inline(always)]
     fn min(self, other: Self) -> Self {
-        self.zip(other, Avx2x8::min)
+        Self(self.0.min(other.0), self.1.min(other.1))
     }
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        self.zip(other, Avx2x8::max)
+        Self(self.0.max(other.0), self.1.max(other.1))
     }
     #[inline(always)]
     fn le(self, other: Self) -> u32 {
