@@ -20,15 +20,26 @@ pub(crate) fn radius(scene: &Scene) -> f32 {
     let Some((low, high)) = scene.bounds() else { return 1.0 };
     let extents = (high - low).to_array();
     let largest = extents.iter().copied().fold(0.0, f32::max);
-    let smallest = extents.into_iter().filter(|&extent| extent >= FLAT_SHARE * largest).fold(largest, f32::min);
+    let smallest =
+        extents.into_iter().filter(|&extent| extent >= FLAT_SHARE * largest).fold(largest, f32::min);
     if smallest > 0.0 { RADIUS_SHARE * smallest } else { 1.0 }
+}
+
+/// Largest magnitude of a coordinate; 1 for an empty scene.
+pub(crate) fn reach(scene: &Scene) -> f32 {
+    scene.bounds().map_or(1.0, |(low, high)| low.abs().max(high.abs()).max_element())
 }
 
 /// A perspective camera that shows the scene, and a word on how it was found.
 ///
 /// Objects are seen from outside, from the front, the right and above. A scene that surrounds its middle is an
 /// interior and is seen from one end of it.
-pub(crate) fn camera(scene: &Scene, trace: &impl Trace, fov: f32, aspect: f32) -> (SceneCamera, &'static str) {
+pub(crate) fn camera(
+    scene: &Scene,
+    trace: &impl Trace,
+    fov: f32,
+    aspect: f32,
+) -> (SceneCamera, &'static str) {
     let bounds = scene.bounds().unwrap_or((Vec3::NEG_ONE, Vec3::ONE));
     match interior(bounds, trace) {
         Some((eye, target)) => (looking(eye, target, fov), "inside, along the longest free way"),
@@ -53,7 +64,8 @@ fn outside((low, high): (Vec3, Vec3), fov: f32, aspect: f32) -> SceneCamera {
     let tan = (0.5 * fov).tan() / MARGIN;
     let distance = (0..8).map(|corner| {
         let pick = |bit: u8, low: f32, high: f32| if corner & bit == 0 { low } else { high };
-        let offset = Vec3::new(pick(1, low.x, high.x), pick(2, low.y, high.y), pick(4, low.z, high.z)) - middle;
+        let offset =
+            Vec3::new(pick(1, low.x, high.x), pick(2, low.y, high.y), pick(4, low.z, high.z)) - middle;
         let needed = (offset.dot(up).abs() / tan).max(offset.dot(right).abs() / (tan * aspect));
         needed - offset.dot(forward)
     });

@@ -3,6 +3,7 @@
 use ambray_core::{
     camera::{Camera, Projection},
     light::Light,
+    offset::RayOffset,
     openness::Openness,
     settings::{Auto, Falloff, Rgb, Settings, Triple},
     trace::Trace,
@@ -36,6 +37,7 @@ pub(crate) fn view(settings: &Settings, scene: &Scene, trace: &impl Trace) -> Re
         near_limit: settings.near_limit.unwrap_or(openness.reach()),
         ambient,
         background: rgb(&settings.background).unwrap_or(ambient),
+        offset: RayOffset::for_extent(framing::reach(scene)),
         lights: lights(settings, scene),
     })
 }

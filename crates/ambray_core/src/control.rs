@@ -35,6 +35,9 @@ impl Control<'_> {
 
 impl std::fmt::Debug for Control<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Control").field("cancel", self.cancel).field("threads", &self.threads).finish_non_exhaustive()
+        f.debug_struct("Control")
+            .field("cancel", self.cancel)
+            .field("threads", &self.threads)
+            .finish_non_exhaustive()
     }
 }

@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use crate::{
     light::Light,
-    offset::offset_point,
+    offset::RayOffset,
     trace::{Ray, Trace},
 };
 
@@ -30,6 +30,17 @@ pub struct Received {
     pub shadow_rays: u32,
 }
 
+/// What lights the receivers.
+#[derive(Clone, Copy, Debug)]
+pub struct DirectLighting<'a> {
+    /// The lights.
+    pub lights: &'a [Light],
+    /// How shadow rays leave their surface.
+    pub offset: RayOffset,
+    /// Whether shadow rays are traced; V is 1 otherwise.
+    pub shadows: bool,
+}
+
 /// Buffers that are reused from batch to batch.
 #[derive(Debug, Default)]
 pub struct DirectScratch {
@@ -40,15 +51,15 @@ pub struct DirectScratch {
 
 /// Writes the direct light at `receivers[i]` to `received[i]`.
 ///
-/// With `shadows` off, V is 1. Lights below the geometric horizon never reach the point.
+/// Lights below the geometric horizon never reach a point.
 pub fn direct_irradiance(
     trace: &impl Trace,
-    lights: &[Light],
+    lighting: DirectLighting<'_>,
     receivers: &[Receiver],
-    shadows: bool,
     scratch: &mut DirectScratch,
     received: &mut [Received],
 ) {
+    let DirectLighting { lights, offset, shadows } = lighting;
     received.fill(Received::default());
     // Light by light, so that a batch holds parallel or converging rays.
     for light in lights {
@@ -60,7 +71,7 @@ pub fn direct_irradiance(
             let arriving = incident.irradiance * cos;
             let above_horizon = receiver.geometric_normal.dot(incident.to_light) > 0.0;
             if cos > 0.0 && above_horizon && arriving != Vec3::ZERO {
-                let origin = offset_point(receiver.position, receiver.geometric_normal);
+                let origin = offset.apply(receiver.position, receiver.geometric_normal);
                 let (direction, t_max) = (incident.to_light, incident.distance);
                 scratch.rays.push(Ray { origin, t_max, direction, seed: receiver.seed });
                 scratch.arriving.push((i as u32, arriving));

@@ -2,21 +2,64 @@
 
 use glam::Vec3;
 
-/// Moves `p` off a surface along its geometric normal `n`, by about 256 units in the last place of each coordinate,
-/// or by `n/65536` where a coordinate is below 1/32 (Wächter and Binder 2019, "A fast and robust method for avoiding
-/// self-intersection").
+/// Moves ray origins off their surface along the geometric normal, by about 256 units in the last place of each
+/// coordinate (Wächter and Binder 2019, "A fast and robust method for avoiding self-intersection").
 ///
-/// `p` should come from barycentric coordinates, and `n` must be the unit normal on the side of the outgoing ray.
-#[must_use]
-pub fn offset_point(p: Vec3, n: Vec3) -> Vec3 {
-    Vec3::new(offset_coordinate(p.x, n.x), offset_coordinate(p.y, n.y), offset_coordinate(p.z, n.z))
+/// Near zero, where units in the last place vanish, the method falls back to a fixed distance of 1/65536 for coordinates
+/// below 1/32. That is 1.5 % of a millimetre-sized thing modelled in metres, so scenes smaller than one unit scale both
+/// constants down by a power of two: results are then invariant under such scaling.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RayOffset {
+    /// Coordinates below this take the fixed distance.
+    near_zero: f32,
+    /// The fixed distance.
+    distance: f32,
 }
 
-fn offset_coordinate(p: f32, n: f32) -> f32 {
-    if p.abs() < 1.0 / 32.0 {
-        return p + n * (1.0 / 65536.0);
+impl RayOffset {
+    /// The constants of the publication, for scenes of one unit and more.
+    pub const UNIT: Self = Self { near_zero: 1.0 / 32.0, distance: 1.0 / 65536.0 };
+
+    /// Offsets for a scene whose coordinates reach up to `extent` in magnitude.
+    #[must_use]
+    pub fn for_extent(extent: f32) -> Self {
+        if extent.is_nan() || extent >= 1.0 {
+            return Self::UNIT;
+        }
+        // The power of two at or below the extent; 2⁻⁶⁴ keeps its constants normal numbers.
+        let exponent = libm::ilogbf(extent.max(f32::MIN_POSITIVE)).max(-64);
+        let scale = libm::scalbnf(1.0, exponent);
+        Self { near_zero: scale * Self::UNIT.near_zero, distance: scale * Self::UNIT.distance }
     }
-    let of_i = (256.0 * n) as i32;
-    // Bit patterns of floats are ordered like integers of their magnitude, so the sign of p decides the direction.
-    f32::from_bits((p.to_bits() as i32).wrapping_add(if p < 0.0 { -of_i } else { of_i }) as u32)
+
+    /// Moves `p` off a surface along its geometric normal `n`.
+    ///
+    /// `p` should come from barycentric coordinates, and `n` must be the unit normal on the side of the outgoing ray.
+    #[must_use]
+    pub fn apply(&self, p: Vec3, n: Vec3) -> Vec3 {
+        Vec3::new(self.coordinate(p.x, n.x), self.coordinate(p.y, n.y), self.coordinate(p.z, n.z))
+    }
+
+    fn coordinate(&self, p: f32, n: f32) -> f32 {
+        if p.abs() < self.near_zero {
+            return p + n * self.distance;
+        }
+        let of_i = (256.0 * n) as i32;
+        // Bit patterns of floats are ordered like integers of their magnitude, so the sign of p decides the direction.
+        f32::from_bits((p.to_bits() as i32).wrapping_add(if p < 0.0 { -of_i } else { of_i }) as u32)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn small_scenes_scale_the_constants() {
+        assert_eq!(RayOffset::for_extent(40.0), RayOffset::UNIT);
+        let small = RayOffset::for_extent(0.1);
+        let (p, n) = (Vec3::new(0.01, 0.0, -0.05), Vec3::new(0.6, 0.8, 0.0));
+        assert_eq!(small.apply(p, n) * 16.0, RayOffset::UNIT.apply(p * 16.0, n));
+        assert!(RayOffset::for_extent(0.0).apply(Vec3::ZERO, Vec3::Y).y > 0.0);
+    }
 }

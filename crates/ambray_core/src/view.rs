@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::{camera::Camera, light::Light, openness::Openness};
+use crate::{camera::Camera, light::Light, offset::RayOffset, openness::Openness};
 
 /// What a frame is rendered with once every `auto` is decided.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,6 +21,8 @@ pub struct View {
     pub ambient: Vec3,
     /// Colour where nothing is seen, linear RGB.
     pub background: Vec3,
+    /// How rays leave their surface, by the scale of the scene.
+    pub offset: RayOffset,
     /// All lights that shine.
     pub lights: Vec<Light>,
 }

@@ -3,9 +3,9 @@
 mod common;
 
 use ambray_core::{
-    compose::{compose, near_radiance},
     basis::Basis,
-    offset::offset_point,
+    compose::{compose, near_radiance},
+    offset::RayOffset,
     sampling::{CLASS_TABLE, DEFAULT_SEEDS, PixelKey, SampleSets, owen, owen_point, sobol1},
     settings::{RadianceSource, Sampling, Sequence},
 };
@@ -34,7 +34,7 @@ fn fuzzy_measures() {
 #[test]
 fn ray_offsets_bit_for_bit() {
     for case in list(&golden("functions")["offset_float32"]) {
-        let out = offset_point(vec3(&case["p"]), vec3(&case["n"]));
+        let out = RayOffset::UNIT.apply(vec3(&case["p"]), vec3(&case["n"]));
         let bits: Vec<u32> = list(&case["out_bits"]).iter().map(integer).collect();
         assert_eq!(out.to_array().map(f32::to_bits), bits[..], "{case}");
     }

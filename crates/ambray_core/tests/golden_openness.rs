@@ -4,6 +4,7 @@ mod common;
 
 use ambray_core::{
     gather::{GatherParams, GatherScratch, Gathered, ShadedPoint, gather},
+    offset::RayOffset,
     sampling::{PixelKey, SampleSets},
     settings::{NearRadiance, RadianceSource, Sampling, Sequence, Thin},
 };
@@ -23,6 +24,7 @@ fn evaluate(case: &Value, spp: u32, near_radiance: NearRadiance) -> Gathered {
         thin_edge: false,
         ambient: Vec3::ONE,
         lights: &[],
+        offset: RayOffset::UNIT,
         samples: &SampleSets::new(Sampling::Same, Sequence::Owen, spp, 0, 0),
     };
     let normal = vec3(&case["normal"]);

@@ -4,6 +4,7 @@ mod common;
 
 use ambray_core::{
     gather::{GatherParams, GatherScratch, Gathered, ShadedPoint, gather},
+    offset::RayOffset,
     sampling::{PixelKey, SampleSets},
     settings::{NearRadiance, RadianceSource, Sampling, Sequence, Thin},
 };
@@ -23,6 +24,7 @@ fn evaluate(case: &Value, samples: &SampleSets, thin: Thin, thin_edge: bool, nea
         thin_edge,
         ambient: Vec3::ONE,
         lights: &[],
+        offset: RayOffset::UNIT,
         samples,
     };
     let normal = vec3(&case["normal"]);

@@ -2,7 +2,6 @@
 
 use crate::{
     basis::Basis,
-    offset::offset_point,
     trace::{Hit, Ray, World},
 };
 
@@ -83,7 +82,7 @@ impl FirstBatch {
                     let distance = if above_horizon { f32::INFINITY } else { 0.0 };
                     self.samples[slot] = Sample { direction, distance, azimuth: sample.azimuth, ..miss };
                     if above_horizon {
-                        let origin = offset_point(point.position, point.geometric_normal);
+                        let origin = params.offset.apply(point.position, point.geometric_normal);
                         self.rays.push(Ray { origin, t_max, direction, seed: point.key.ray_seed(j as u32) });
                         self.slots.push(slot as u32);
                     }

@@ -13,6 +13,7 @@ use glam::Vec3;
 
 use crate::{
     light::Light,
+    offset::RayOffset,
     openness::Openness,
     sampling::{PixelKey, SampleSets},
     settings::{NearRadiance, RadianceSource, Thin},
@@ -60,6 +61,8 @@ pub struct GatherParams<'a> {
     pub ambient: Vec3,
     /// Lights for [`RadianceSource::Lit`].
     pub lights: &'a [Light],
+    /// How rays leave their surface.
+    pub offset: RayOffset,
     /// Directions.
     pub samples: &'a SampleSets,
 }

@@ -5,7 +5,7 @@ use std::f32::consts::FRAC_1_PI;
 use glam::Vec3;
 
 use crate::{
-    direct::{DirectScratch, Received, Receiver, direct_irradiance},
+    direct::{DirectLighting, DirectScratch, Received, Receiver, direct_irradiance},
     sampling::pcg,
     settings::RadianceSource,
     trace::{Hit, Ray, World},
@@ -50,8 +50,8 @@ impl RadianceScratch {
         self.received.resize(self.albedo.len(), Received::default());
         let shadows = params.source == RadianceSource::Lit;
         if shadows || params.source == RadianceSource::LitUnshadowed {
-            let (lights, direct) = (params.lights, &mut self.direct);
-            direct_irradiance(world, lights, &self.receivers, shadows, direct, &mut self.received);
+            let lighting = DirectLighting { lights: params.lights, offset: params.offset, shadows };
+            direct_irradiance(world, lighting, &self.receivers, &mut self.direct, &mut self.received);
         }
     }
 

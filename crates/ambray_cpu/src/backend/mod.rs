@@ -61,7 +61,12 @@ impl CpuBackend {
     }
 
     /// Renders a frame.
-    pub fn render(&self, settings: &Settings, view: &View, control: Control<'_>) -> Result<Frame, BackendError> {
+    pub fn render(
+        &self,
+        settings: &Settings,
+        view: &View,
+        control: Control<'_>,
+    ) -> Result<Frame, BackendError> {
         let start = Instant::now();
         let pool = thread_pool(control)?;
         let samples = sample_sets(settings);
@@ -121,6 +126,7 @@ fn gather_params<'a>(settings: &Settings, view: &'a View, samples: &'a SampleSet
         thin_edge: settings.thin_edge,
         ambient: view.ambient,
         lights: &view.lights,
+        offset: view.offset,
         samples,
     }
 }

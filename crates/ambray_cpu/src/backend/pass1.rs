@@ -8,7 +8,7 @@ use std::{
 
 use ambray_core::{
     control::{Cancelled, Control},
-    direct::{DirectScratch, Received, Receiver, direct_irradiance},
+    direct::{DirectLighting, DirectScratch, Received, Receiver, direct_irradiance},
     filter::Guide,
     frame::{GBufferPixel, RayCounts},
     gather::{GatherParams, GatherScratch, Gathered, ShadedPoint, gather},
@@ -99,7 +99,8 @@ pub(super) fn run(
         elapsed: Duration::ZERO,
     };
     let rows = TILE * width as usize;
-    let bands = pass.gbuffer.chunks_mut(rows).zip(pass.guides.chunks_mut(rows)).zip(pass.ambient.chunks_mut(rows));
+    let bands =
+        pass.gbuffer.chunks_mut(rows).zip(pass.guides.chunks_mut(rows)).zip(pass.ambient.chunks_mut(rows));
     let second = pass.second.chunks_mut(rows).map(Some).chain(std::iter::repeat_with(|| None));
     let bands: Vec<Band<'_>> = bands
         .zip(second.zip(pass.bent.chunks_mut(rows)))
@@ -146,7 +147,8 @@ impl Job<'_> {
     fn primary(&self, scratch: &mut Scratch, band: &mut Band<'_>, x0: usize, y0: usize) {
         let width = self.view.camera.size().0 as usize;
         let (columns, rows) = (TILE.min(width - x0), band.gbuffer.len() / width);
-        let pixels = (0..rows).flat_map(|row| (x0..x0 + columns).map(move |x| (row * width + x, x, y0 + row)));
+        let pixels =
+            (0..rows).flat_map(|row| (x0..x0 + columns).map(move |x| (row * width + x, x, y0 + row)));
         let (frame, seed) = (self.settings.frame, self.settings.seed);
         scratch.rays.clear();
         scratch.rays.extend(pixels.clone().map(|(_, x, y)| {
@@ -222,8 +224,9 @@ impl Job<'_> {
         }));
         scratch.received.clear();
         scratch.received.resize(scratch.receivers.len(), Received::default());
-        let lights = &self.view.lights;
-        direct_irradiance(self.world, lights, &scratch.receivers, true, &mut scratch.direct, &mut scratch.received);
+        let lighting = DirectLighting { lights: &self.view.lights, offset: self.view.offset, shadows: true };
+        let (receivers, received) = (&scratch.receivers, &mut scratch.received);
+        direct_irradiance(self.world, lighting, receivers, &mut scratch.direct, received);
         for (&(i, ..), received) in scratch.seen.iter().zip(&scratch.received) {
             let pixel = &mut band.gbuffer[i];
             pixel.direct = pixel.albedo * received.irradiance * FRAC_1_PI;

@@ -45,7 +45,8 @@ pub(super) fn run(
     let mut beauty = vec![Vec3::ZERO; pixels];
     let mut ambient = vec![Vec4::ZERO; pixels];
     let mut bent = vec![Vec3::ZERO; pixels];
-    let rows = beauty.par_chunks_mut(width).zip(ambient.par_chunks_mut(width)).zip(bent.par_chunks_mut(width));
+    let rows =
+        beauty.par_chunks_mut(width).zip(ambient.par_chunks_mut(width)).zip(bent.par_chunks_mut(width));
     rows.enumerate().try_for_each_init(Rows::default, |buffers, (y, ((beauty, ambient), bent))| {
         control.check()?;
         buffers.filter(&filter, pass1, width, y, ambient);

@@ -58,7 +58,12 @@ fn shaded_point(point: &QueryPoint, index: u32, settings: &Settings) -> ShadedPo
 fn finish(gathered: &Gathered, settings: &Settings, view: &View) -> QueryResult {
     QueryResult {
         openness: gathered.openness,
-        near_radiance: near_radiance(settings.radiance_source, view.ambient, gathered.openness, gathered.near),
+        near_radiance: near_radiance(
+            settings.radiance_source,
+            view.ambient,
+            gathered.openness,
+            gathered.near,
+        ),
         bent_normal: gathered.bent.normalize_or_zero(),
         first_batch: gathered.first,
         second_batch: gathered.second,
