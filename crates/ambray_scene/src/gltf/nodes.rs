@@ -126,8 +126,8 @@ pub(super) fn placement(world: DAffine3) -> Option<Affine3A> {
     const FLAT: f64 = 1e-12;
     let m = world.matrix3;
     let edges = m.x_axis.length() * m.y_axis.length() * m.z_axis.length();
-    // NaN must fail, too.
-    if !(m.determinant().abs() > FLAT * edges) {
+    let volume = m.determinant().abs();
+    if volume.is_nan() || volume <= FLAT * edges {
         return None;
     }
     let single = single(world);
