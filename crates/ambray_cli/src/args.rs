@@ -1,6 +1,6 @@
 //! The command line as it was typed: parsed and checked for form, without side effects.
 
-use std::{ffi::OsString, path::PathBuf, str::FromStr};
+use std::{any::TypeId, ffi::OsString, path::PathBuf, str::FromStr};
 
 use ambray::{
     Aov,
@@ -26,7 +26,8 @@ Exit codes: 0 done, 2 error, 130 interrupted.";
 
 const PRECEDENCE: &str = "\
 Which setting counts: a flag beats the settings file, which beats the preset, which beats the default. \
-A --preset flag replaces the preset named in the settings file, but not the settings written out there.";
+A --preset flag replaces the preset named in the settings file, but not the settings written out there. \
+Of a flag given twice, the last one counts.";
 
 /// Ambient lighting by ray tracing: openness, colour bleeding and pictures.
 ///
@@ -281,20 +282,35 @@ fn seconds(text: &str) -> Result<f64, String> {
 pub fn command() -> clap::Command {
     let defaults = toml::Table::try_from(Settings::default()).expect("settings are plain data");
     let with_settings = ["render", "query", "bench"];
-    with_settings.into_iter().fold(Cli::command(), |command, name| {
-        command.mut_subcommand(name, |sub| sub.mut_args(|arg| describe_setting(arg, &defaults)))
+    let command = Cli::command().args_override_self(true);
+    with_settings.into_iter().fold(command, |command, name| {
+        command.mut_subcommand(name, |sub| sub.mut_args(|arg| describe_setting(lenient(arg), &defaults)))
     })
 }
 
-/// Adds its default to the help of a setting, and lets its value begin with a minus, so that the range check can name it.
+/// Lets values begin with a minus, so that the error is about the value and its range.
+fn lenient(arg: clap::Arg) -> clap::Arg {
+    let has_value =
+        arg.get_long().is_some() && arg.get_action().takes_values() && !arg.is_require_equals_set();
+    let is_list = arg.get_value_names().is_some_and(|names| names.iter().any(|name| name.contains(',')));
+    arg.allow_negative_numbers(has_value && !is_list).allow_hyphen_values(has_value && is_list)
+}
+
+/// Adds its default to the help of a setting, and says what numbers are expected.
 fn describe_setting(arg: clap::Arg, defaults: &toml::Table) -> clap::Arg {
     let Some(default) = arg.get_long().and_then(|long| defaults.get(long)) else { return arg };
     let help = arg.get_help().map(ToString::to_string).unwrap_or_default();
-    let optional_value = arg.is_require_equals_set();
-    let listed = arg.get_value_names().is_some_and(|names| names.iter().any(|name| name.contains(',')));
-    arg.help(format!("{help} [default: {}]", spelled(default)))
-        .allow_negative_numbers(!listed && !optional_value)
-        .allow_hyphen_values(listed)
+    let arg = arg.help(format!("{help} [default: {}]", spelled(default)));
+    let value = arg.get_value_parser().type_id();
+    if value == TypeId::of::<u32>() {
+        arg.value_parser(|text: &str| {
+            text.parse::<u32>().map_err(|_| "expected a whole number, 0 to 4294967295")
+        })
+    } else if value == TypeId::of::<f32>() {
+        arg.value_parser(|text: &str| text.parse::<f32>().map_err(|_| "expected a number"))
+    } else {
+        arg
+    }
 }
 
 /// A value of a settings file as it is spelled on the command line.
@@ -338,6 +354,14 @@ mod tests {
         assert_eq!(args.scene.scene, PathBuf::from("atrium"));
         assert_eq!(args.output, None);
         assert_eq!(args.settings.flags, SettingsPatch::default());
+    }
+
+    #[test]
+    fn the_last_of_two_flags_counts() {
+        let Ok(Command::Render(args)) = parse_from(["ambray", "render", "--spp=3", "-q", "--spp=5"]) else {
+            panic!("expected render")
+        };
+        assert_eq!(args.settings.flags.spp, Some(5));
     }
 
     #[test]

@@ -325,13 +325,18 @@ pub fn scene_line(scene: &SceneReport, build: &BuildReport) -> String {
     )
 }
 
+/// A point or colour, rounded to thousandths.
+#[must_use]
+pub fn triple(v: [f32; 3]) -> String {
+    v.map(|x| ((f64::from(x) * 1e3).round() / 1e3 + 0.0).to_string()).join(",")
+}
+
 fn camera_line(camera: &CameraReport) -> String {
-    let list = |v: [f32; 3]| v.map(|x| format!("{}", (x * 1e3).round() * 1e-3 + 0.0)).join(",");
     let projection = match (camera.vertical_fov_degrees, camera.orthographic_height) {
         (Some(degrees), _) => format!("{degrees:.1}° upright"),
         (None, height) => format!("orthographic, height {}", height.unwrap_or_default()),
     };
-    let (position, forward) = (list(camera.position), list(camera.forward));
+    let (position, forward) = (triple(camera.position), triple(camera.forward));
     format!("{}: at {position}, looking along {forward}, {projection}", camera.origin)
 }
 
@@ -374,6 +379,7 @@ mod tests {
         assert_eq!(grouped(999), "999");
         assert_eq!(grouped(1_234_567), "1 234 567");
         assert_eq!(bytes(27_000_000), "27.0 MB");
+        assert_eq!(triple([-0.0, 3.688, -0.815_000_06]), "0,3.688,-0.815");
         assert_eq!(milliseconds(Duration::from_nanos(1_234_567)), 1.235);
     }
 }

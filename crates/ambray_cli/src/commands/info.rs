@@ -14,7 +14,7 @@ use serde::Serialize;
 use crate::{
     args::InfoArgs,
     machine::Machine,
-    report::{self, BuildReport, SceneReport, ViewReport, bytes, grouped},
+    report::{self, BuildReport, SceneReport, ViewReport, bytes, grouped, triple},
     scene_source, terminal,
 };
 
@@ -224,11 +224,11 @@ impl SceneInfo {
             let _ = writeln!(text, "{name:<9}{rest}"); // writing to a string cannot fail
         };
         if let Some(Bounds { low, high }) = bounds {
-            line("bounds", format!("{} to {}", list(*low), list(*high)));
+            line("bounds", format!("{} to {}", triple(*low), triple(*high)));
         }
         let view = &self.default_view;
         line("radius", format!("{} (auto)", view.radius));
-        line("ambient", format!("{} (auto)", list(view.ambient)));
+        line("ambient", format!("{} (auto)", triple(view.ambient)));
         line("camera", format!("{} (auto)", view.camera.origin));
 
         line("meshes", grouped(meshes.len() as u64));
@@ -248,12 +248,12 @@ impl SceneInfo {
         let image = |image: &ImageInfo| format!("{}: {}x{}", named(&image.name), image.width, image.height);
         entries(images, image).for_each(|entry| line("", entry));
         line("lights", lights.len().to_string());
-        let light = |light: &LightInfo| format!("{}: {}", light.kind, list(light.strength));
+        let light = |light: &LightInfo| format!("{}: {}", light.kind, triple(light.strength));
         entries(lights, light).for_each(|entry| line("", entry));
         line("cameras", cameras.len().to_string());
         let numbered: Vec<_> = cameras.iter().enumerate().collect();
         let camera = |(number, camera): &(usize, &CameraInfo)| {
-            format!("{number} {}: at {}", named(&camera.name), list(camera.position))
+            format!("{number} {}: at {}", named(&camera.name), triple(camera.position))
         };
         entries(&numbered, camera).for_each(|entry| line("", entry));
         text
@@ -281,8 +281,4 @@ fn material_line(material: &MaterialInfo) -> String {
         textures => format!("; textures: {}", textures.join(", ")),
     };
     format!("{}: {}{textures}", named(&material.name), words.join(", "))
-}
-
-fn list(v: [f32; 3]) -> String {
-    v.map(|x| ((x * 1e3).round() * 1e-3 + 0.0).to_string()).join(",")
 }

@@ -56,13 +56,11 @@ impl Target {
 
 fn check_file(path: &Path) -> anyhow::Result<()> {
     let metadata = fs::metadata(path).ok();
-    if path.as_os_str().is_empty() || path.file_name().is_none() {
-        bail!("not the name of a file");
-    }
     match metadata {
         Some(metadata) if metadata.is_dir() => bail!("is a folder, not a file"),
         Some(metadata) if metadata.permissions().readonly() => bail!("the file exists and is read-only"),
         Some(metadata) if !metadata.is_file() => return Ok(()),
+        _ if path.file_name().is_none() => bail!("not the name of a file"),
         _ => {}
     }
     let folder = folder_of(path);
