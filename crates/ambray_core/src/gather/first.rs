@@ -18,6 +18,8 @@ pub(super) struct FirstBatch {
     hits: Vec<Hit>,
     /// Sample that each ray belongs to.
     slots: Vec<u32>,
+    /// Basis and ray origin of each point of a run.
+    starts: Vec<(Basis, Vec3)>,
 }
 
 impl FirstBatch {
@@ -72,18 +74,23 @@ impl FirstBatch {
         let t_max = params.openness.reach();
         let mut first = 0;
         for run in points.chunk_by(|a, b| a.key.class == b.key.class) {
+            self.starts.clear();
+            self.starts.extend(run.iter().map(|point| {
+                let origin = params.offset.apply(point.position, point.geometric_normal);
+                (Basis::from_normal(point.normal), origin)
+            }));
             for j in 0..spp {
-                for (i, point) in run.iter().enumerate() {
+                for (i, (point, (basis, origin))) in run.iter().zip(&self.starts).enumerate() {
                     let slot = (first + i) * spp + j;
                     let sample = params.samples.direction(point.key, j as u32);
-                    let direction = Basis::from_normal(point.normal).to_world(sample.local);
+                    let direction = basis.to_world(sample.local);
                     // A direction below the geometric horizon is blocked at once, without a ray (spec §5).
                     let above_horizon = direction.dot(point.geometric_normal) > 0.0;
                     let distance = if above_horizon { f32::INFINITY } else { 0.0 };
                     self.samples[slot] = Sample { direction, distance, azimuth: sample.azimuth, ..miss };
                     if above_horizon {
-                        let origin = params.offset.apply(point.position, point.geometric_normal);
-                        self.rays.push(Ray { origin, t_max, direction, seed: point.key.ray_seed(j as u32) });
+                        let seed = point.key.ray_seed(j as u32);
+                        self.rays.push(Ray { origin: *origin, t_max, direction, seed });
                         self.slots.push(slot as u32);
                     }
                 }
