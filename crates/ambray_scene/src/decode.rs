@@ -24,14 +24,17 @@ pub(crate) struct Encoded<'a> {
 /// Decodes all images; the results are in the order of the images and their uses.
 pub(crate) fn decode_all(encoded: &[Encoded<'_>]) -> Outcome<Vec<Image>> {
     let mut left = limits::TEXELS;
+    let mut texels = Vec::with_capacity(encoded.len());
     for image in encoded {
         let (width, height) = dimensions(image)?;
-        let texels = u64::from(width) * u64::from(height) * image.uses.len() as u64;
-        left = left.checked_sub(texels).ok_or_else(|| {
+        texels.push(u64::from(width) * u64::from(height));
+        let all = texels.last().copied().unwrap_or_default() * image.uses.len() as u64;
+        left = left.checked_sub(all).ok_or_else(|| {
             Fault::too_large(&image.at, format!("images of more than {} texels in total", limits::TEXELS))
         })?;
     }
-    let decoded: Vec<Outcome<Vec<Image>>> = encoded.par_iter().map(decode).collect();
+    let decoded: Vec<Outcome<Vec<Image>>> =
+        encoded.par_iter().zip(texels).map(|(image, texels)| decode(image, texels)).collect();
     // The first error in file order, whichever thread was first.
     let mut images = Vec::new();
     for result in decoded {
@@ -42,8 +45,9 @@ pub(crate) fn decode_all(encoded: &[Encoded<'_>]) -> Outcome<Vec<Image>> {
 
 /// Size according to the header, within limits.
 fn dimensions(image: &Encoded<'_>) -> Outcome<(u32, u32)> {
-    let (width, height) =
-        reader(image)?.into_dimensions().map_err(|error| Fault::invalid(&image.at, one_line(&error)))?;
+    let (width, height) = reader(image, OVERHEAD)?
+        .into_dimensions()
+        .map_err(|error| Fault::invalid(&image.at, one_line(&error)))?;
     if width == 0 || height == 0 {
         return Err(Fault::invalid(&image.at, format!("image of {width} × {height} texels")));
     }
@@ -54,8 +58,11 @@ fn dimensions(image: &Encoded<'_>) -> Outcome<(u32, u32)> {
     Ok((width, height))
 }
 
-fn decode(image: &Encoded<'_>) -> Outcome<Vec<Image>> {
-    let decoded = reader(image)?.decode().map_err(|error| Fault::invalid(&image.at, one_line(&error)))?;
+fn decode(image: &Encoded<'_>, texels: u64) -> Outcome<Vec<Image>> {
+    // 16 bits a channel need twice the memory of ours.
+    let decoded = reader(image, 8 * texels + OVERHEAD)?
+        .decode()
+        .map_err(|error| Fault::invalid(&image.at, one_line(&error)))?;
     let rgba = decoded.into_rgba8();
     let (width, height) = rgba.dimensions();
     let texels: Vec<[u8; 4]> = rgba.pixels().map(|pixel| pixel.0).collect();
@@ -69,7 +76,10 @@ fn decode(image: &Encoded<'_>) -> Outcome<Vec<Image>> {
     Ok(images)
 }
 
-fn reader<'a>(image: &'a Encoded<'_>) -> Outcome<ImageReader<Cursor<&'a [u8]>>> {
+/// Bytes that a decoder may allocate besides the texels: tables, profiles, comments.
+const OVERHEAD: u64 = 64 << 20;
+
+fn reader<'a>(image: &'a Encoded<'_>, max_alloc: u64) -> Outcome<ImageReader<Cursor<&'a [u8]>>> {
     let mut reader = ImageReader::new(Cursor::new(image.bytes.as_ref()))
         .with_guessed_format()
         .map_err(|error| Fault::io(&image.at, error.to_string()))?;
@@ -78,9 +88,9 @@ fn reader<'a>(image: &'a Encoded<'_>) -> Outcome<ImageReader<Cursor<&'a [u8]>>> 
         let found = if ktx { "a KTX image" } else { "data of no known image format" };
         return Err(Fault::invalid(&image.at, format!("{found}, only PNG, JPEG and WebP are read")));
     }
-    // The sides are checked by `dimensions` with a better message; 16 bits a channel need twice the memory of ours.
+    // The sides are checked by `dimensions` with a better message.
     let mut limits = Limits::default();
-    limits.max_alloc = Some(8 * u64::from(limits::IMAGE_SIDE) * u64::from(limits::IMAGE_SIDE));
+    limits.max_alloc = Some(max_alloc + image.bytes.len() as u64);
     reader.limits(limits);
     Ok(reader)
 }

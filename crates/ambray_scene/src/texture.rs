@@ -101,12 +101,9 @@ impl Image {
         f32::from(least.unwrap_or(255)) / 255.0
     }
 
-    /// Texel of `level` as linear RGBA.
-    fn texel(&self, level: usize, x: usize, y: usize) -> Vec4 {
-        let level = &self.levels[level];
-        let [r, g, b, a] = level.texels[y * level.width as usize + x].map(usize::from);
-        let table = if self.srgb { srgb::decoded() } else { &srgb::UNIT };
-        Vec4::new(table[r], table[g], table[b], srgb::UNIT[a])
+    /// What the bytes of the colour channels mean.
+    fn decoder(&self) -> &'static [f32; 256] {
+        if self.srgb { srgb::decoded() } else { &srgb::UNIT }
     }
 }
 
@@ -157,8 +154,12 @@ impl Sampler {
     }
 
     fn at_level(&self, image: &Image, level: usize, filter: Filter, uv: Vec2) -> Vec4 {
-        let [u, v] = self.taps(&image.levels[level], filter, uv);
-        let texel = |x: usize, y: usize| image.texel(level, x, y);
+        let (level, decode) = (&image.levels[level], image.decoder());
+        let [u, v] = self.taps(level, filter, uv);
+        let texel = |x: usize, y: usize| {
+            let [r, g, b, a] = level.texels[y * level.width as usize + x].map(usize::from);
+            Vec4::new(decode[r], decode[g], decode[b], srgb::UNIT[a])
+        };
         if filter == Filter::Nearest {
             return texel(u.first, v.first);
         }

@@ -11,66 +11,66 @@ use crate::{Filter, Image, Sampler, Texture, Wrap};
 use super::document::{Document, missing, read_uri};
 use super::json::{self, Index};
 
+/// A texture of the file with its use: read as sRGB or as linear data.
+type Use = (Index, bool);
+
 /// Textures in the order of their first use. The same texture as colour and as normal map counts as two.
 #[derive(Debug, Default)]
 pub(super) struct TextureUses {
-    textures: Vec<(Index, Sampler)>,
-    by_key: BTreeMap<(Index, bool), u32>,
-    /// (glTF image, sRGB) of each image of the scene, in order of first use.
-    images: Vec<(Index, bool)>,
+    textures: Vec<Texture>,
+    by_use: BTreeMap<Use, u32>,
+    /// glTF images in order of first use, with the scene images they become.
+    images: Vec<(Index, Vec<bool>)>,
+    slots: BTreeMap<Index, usize>,
+    /// (slot in `images`, position among its uses) of each texture; becomes its image index once all are known.
+    sources: Vec<(usize, usize)>,
 }
 
 impl TextureUses {
     /// Scene index of glTF texture `index`, read as sRGB or as linear data; `at` is the place that refers to it.
     pub(super) fn add(&mut self, root: &json::Root, index: Index, srgb: bool, at: &str) -> Outcome<u32> {
-        if let Some(&known) = self.by_key.get(&(index, srgb)) {
+        if let Some(&known) = self.by_use.get(&(index, srgb)) {
             return Ok(known);
         }
         let texture = root.textures.get(index).ok_or_else(|| missing(at, "texture", index))?;
         let sampler = sampler(root, texture, index)?;
-        let image = (source(texture, index)?, srgb);
-        let slot = self.images.iter().position(|&other| other == image).unwrap_or_else(|| {
-            self.images.push(image);
+        let image = source(texture, index)?;
+        let slot = *self.slots.entry(image).or_insert_with(|| {
+            self.images.push((image, Vec::new()));
             self.images.len() - 1
         });
-        self.textures.push((slot, sampler));
+        let uses = &mut self.images[slot].1;
+        let position = uses.iter().position(|&other| other == srgb).unwrap_or_else(|| {
+            uses.push(srgb);
+            uses.len() - 1
+        });
+        self.sources.push((slot, position));
+        self.textures.push(Texture { image: 0, sampler });
         let new = (self.textures.len() - 1) as u32; // bounded by twice the textures of a file below 4 GiB
-        self.by_key.insert((index, srgb), new);
+        self.by_use.insert((index, srgb), new);
         Ok(new)
     }
 
     /// Reads and decodes what was used.
-    pub(super) fn load(self, doc: &Document<'_>, folder: &mut Folder) -> Outcome<(Vec<Texture>, Vec<Image>)> {
-        let mut encoded: Vec<Encoded<'_>> = Vec::new();
-        let mut slots: BTreeMap<Index, usize> = BTreeMap::new();
-        for &(index, srgb) in &self.images {
-            if let Some(&slot) = slots.get(&index) {
-                encoded[slot].uses.push(srgb);
-            } else {
-                slots.insert(index, encoded.len());
-                encoded.push(read_image(doc, index, srgb, folder)?);
-            }
+    pub(super) fn load(
+        mut self,
+        doc: &Document<'_>,
+        folder: &mut Folder,
+    ) -> Outcome<(Vec<Texture>, Vec<Image>)> {
+        // The decoder returns the uses of the first image, then those of the second, and so on.
+        let mut first = Vec::with_capacity(self.images.len());
+        let mut encoded = Vec::with_capacity(self.images.len());
+        let mut count = 0;
+        for (index, uses) in self.images {
+            first.push(count);
+            count += uses.len();
+            encoded.push(read_image(doc, index, uses, folder)?);
         }
-        let images = decode_all(&encoded)?;
-        // Where in `images` the decoder put each (image, sRGB).
-        let order = slots_in_order(&encoded, &slots);
-        let position = |key: &(Index, bool)| order.iter().position(|other| other == key);
-        let textures = self.textures.iter().map(|&(slot, sampler)| {
-            let image = position(&self.images[slot]).expect("every used image was decoded") as u32;
-            Texture { image, sampler }
-        });
-        Ok((textures.collect(), images))
+        for (texture, (slot, position)) in self.textures.iter_mut().zip(self.sources) {
+            texture.image = (first[slot] + position) as u32;
+        }
+        Ok((self.textures, decode_all(&encoded)?))
     }
-}
-
-/// The keys of the decoded images, in the order of decoding.
-fn slots_in_order(encoded: &[Encoded<'_>], slots: &BTreeMap<Index, usize>) -> Vec<(Index, bool)> {
-    let mut by_slot: Vec<(usize, Index)> = slots.iter().map(|(&index, &slot)| (slot, index)).collect();
-    by_slot.sort_unstable();
-    by_slot
-        .into_iter()
-        .flat_map(|(slot, index)| encoded[slot].uses.iter().map(move |&srgb| (index, srgb)))
-        .collect()
 }
 
 /// The image that a texture shows, in a format we read.
@@ -89,7 +89,7 @@ fn source(texture: &json::Texture, index: Index) -> Outcome<Index> {
 fn read_image<'d>(
     doc: &'d Document<'_>,
     index: Index,
-    srgb: bool,
+    uses: Vec<bool>,
     folder: &mut Folder,
 ) -> Outcome<Encoded<'d>> {
     let at = format!("images[{index}]");
@@ -101,7 +101,7 @@ fn read_image<'d>(
     };
     let uri = image.uri.as_deref().filter(|uri| scheme(uri).is_none());
     let name = image.name.as_deref().or(uri).unwrap_or_default().to_owned();
-    Ok(Encoded { bytes, name, at, uses: vec![srgb] })
+    Ok(Encoded { bytes, name, at, uses })
 }
 
 fn sampler(root: &json::Root, texture: &json::Texture, index: Index) -> Outcome<Sampler> {

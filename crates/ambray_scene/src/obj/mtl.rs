@@ -61,11 +61,11 @@ impl Library {
 
     /// All materials. The files of their textures are appended to `images`, with whether they are sRGB.
     pub(super) fn materials(&self, images: &mut Vec<(String, bool)>) -> Vec<Material> {
+        let mut known: HashMap<(String, bool), usize> = HashMap::new();
         let mut texture = |file: &Option<String>, srgb: bool| {
             let key = (file.clone()?, srgb);
-            let known = images.iter().position(|other| *other == key);
-            let index = known.unwrap_or_else(|| {
-                images.push(key);
+            let index = *known.entry(key).or_insert_with_key(|key| {
+                images.push(key.clone());
                 images.len() - 1
             });
             Some(TextureRef { texture: index as u32, uv_set: 0, transform: Affine2::IDENTITY })

@@ -46,6 +46,9 @@ pub(super) fn logical_lines(text: &str) -> impl Iterator<Item = (usize, String)>
     })
 }
 
+/// Material libraries of a file; each may cost a warning.
+const MOST_LIBRARIES: usize = 64;
+
 /// Position, texture coordinate and normal of a face's corner.
 type Corner = (u32, Option<u32>, Option<u32>);
 
@@ -88,7 +91,11 @@ impl Parser {
                 self.material = Some(rest.to_owned());
             }
             "mtllib" if !self.parsed.libraries.iter().any(|known| known == rest) => {
-                self.parsed.libraries.push(rest.to_owned());
+                if self.parsed.libraries.len() == MOST_LIBRARIES {
+                    warnings.tally("material libraries beyond the first 64 are ignored", 1);
+                } else {
+                    self.parsed.libraries.push(rest.to_owned());
+                }
             }
             "p" | "l" => warnings.tally("points and lines are skipped", 1),
             _ => {} // comments, smoothing groups and what we do not know
