@@ -1,4 +1,21 @@
 //! Ambray: real-time ambient lighting by ray tracing.
+//!
+//! Every visible surface point gets an *openness* O (ambient occlusion with a fuzzy measure of the distance to the
+//! first hit) and a *near-field radiance* I (colour bleeding from the hits of the same rays), so that
+//! L = a·(L_a·O + I) + direct light. A handful of rays a pixel is enough.
+//!
+//! ```
+//! use ambray::{Control, Renderer, scene::atrium, settings::{Settings, Size}};
+//!
+//! let renderer = Renderer::new(atrium::atrium());
+//! let settings = Settings { size: Size { width: 64, height: 36 }, ..Settings::default() };
+//! let frame = renderer.render(&settings, Control::default())?;
+//! assert!(frame.ambient.iter().all(|v| (0.0..=1.0).contains(&v.x)));
+//! # Ok::<(), ambray::RenderError>(())
+//! ```
+//!
+//! [`Settings`](settings::Settings) hold everything that decides a picture; [`scene::load`] reads glTF and OBJ files;
+//! [`Renderer::query`] evaluates arbitrary points instead of pixels.
 #![forbid(unsafe_code)]
 
 mod framing;

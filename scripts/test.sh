@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# Everything that must hold: formatting, lints, documentation, tests, examples. On Debian it installs what it needs.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+step() { printf '\n== %s\n' "$*"; }
+
+# The conformance tests compile NVIDIA's FLIP (C++); everything else needs a linker only.
+if ! command -v c++ >/dev/null; then
+  step "installing a C++ compiler for the picture metrics of the tests"
+  sudo=$([ "$(id -u)" = 0 ] || echo sudo)
+  $sudo apt-get update -qq
+  $sudo apt-get install -y -qq --no-install-recommends g++
+fi
+
+step "formatting"
+if cargo fmt --version >/dev/null 2>&1; then cargo fmt --all --check; else echo "skipped: no rustfmt"; fi
+
+step "lints"
+if cargo clippy --version >/dev/null 2>&1; then
+  cargo clippy --workspace --all-targets --locked --quiet -- -D warnings
+else
+  echo "skipped: no clippy"
+fi
+
+step "documentation"
+RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked --quiet
+
+step "tests"
+cargo test --workspace --locked
+
+step "the program, as a newcomer runs it"
+cargo build --release --locked
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+program=$PWD/target/release/ambray
+(cd "$folder" && "$program" && test -s ambray.png)
+echo "all is well"
