@@ -7,7 +7,8 @@ use spdx::{Expression, ParseMode};
 
 fn allowed() -> Vec<String> {
     let text = include_str!("../../deny.toml");
-    let list = text.split("allow = [").nth(1).and_then(|rest| rest.split(']').next()).expect("a list of licences");
+    let list =
+        text.split("allow = [").nth(1).and_then(|rest| rest.split(']').next()).expect("a list of licences");
     list.split('"').skip(1).step_by(2).map(str::to_owned).collect()
 }
 
