@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use ambray_core::camera::{Camera, Projection};
-use ambray_core::offset::offset_point;
+use ambray_core::offset::RayOffset;
 use ambray_core::sampling::{PixelKey, SampleSets};
 use ambray_core::settings::{Sampling, Sequence};
 use ambray_core::trace::{Hit, Ray, Trace};
@@ -104,9 +104,17 @@ fn main() {
 }
 
 fn timed(batches: &[Vec<Ray>], mut trace: impl FnMut(&[Ray])) -> f64 {
-    let start = Instant::now();
+    let start = seconds();
     batches.iter().for_each(|rays| trace(rays));
-    start.elapsed().as_secs_f64()
+    seconds() - start
+}
+
+/// Time this thread spent running where the system tells (Linux), so that other load hardly matters; else wall clock.
+fn seconds() -> f64 {
+    static START: std::sync::LazyLock<Instant> = std::sync::LazyLock::new(Instant::now);
+    let own = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
+    let own = own.and_then(|s| s.split(' ').next()?.parse::<f64>().ok());
+    own.map_or_else(|| START.elapsed().as_secs_f64(), |nanoseconds| nanoseconds * 1e-9)
 }
 
 /// Ambient rays of a quarter of all tiles of the view.
@@ -136,7 +144,7 @@ fn ambient_batches(scene: &Scene, tracer: &impl Trace, eye: Vec3, target: Vec3) 
                     for &(key, (position, normal)) in pixels {
                         let basis = basis(normal);
                         rays.push(Ray {
-                            origin: offset_point(position, normal),
+                            origin: RayOffset::UNIT.apply(position, normal),
                             t_max: 1.0,
                             direction: (basis * sets.direction(key, sample).local).normalize(),
                             seed: key.ray_seed(sample),

@@ -20,8 +20,6 @@ pub(crate) trait Lanes<const W: usize>: Copy {
     fn le(self, other: Self) -> u32;
     /// Lanes where `self < other`; false for NaN.
     fn lt(self, other: Self) -> u32;
-    /// `self` where the mask is set, `other` elsewhere.
-    fn select(self, mask: u32, other: Self) -> Self;
 }
 
 /// Plain arrays: any machine, vectorised by the compiler as far as it can.
@@ -93,15 +91,5 @@ impl<const W: usize> Lanes<W> for Array<W> {
     #[inline(always)]
     fn lt(self, other: Self) -> u32 {
         self.compare(other, |a, b| a < b)
-    }
-    #[inline(always)]
-    fn select(self, mask: u32, other: Self) -> Self {
-        let mut out = other.0;
-        for i in 0..W {
-            if mask >> i & 1 != 0 {
-                out[i] = self.0[i];
-            }
-        }
-        Self(out)
     }
 }

@@ -1,6 +1,7 @@
 //! Tracing kernels: written once, compiled for each instruction set.
 
 pub(crate) mod lanes;
+mod packet;
 mod ray;
 mod single;
 mod slab;
@@ -136,8 +137,15 @@ fn generic<const W: usize, L: Lanes<W>, R: Lanes<16>, Q: Query>(
     rays: &[Ray],
     answers: &mut [Q::Answer],
 ) {
-    let mut stack = vec![MaybeUninit::uninit(); scene.stack];
-    for (ray, answer) in rays.iter().zip(answers) {
-        *answer = Q::answer(single::trace::<W, L, Q>(scene, ray, &mut stack));
+    let mut single = vec![MaybeUninit::uninit(); scene.stack];
+    if !scene.packets {
+        for (ray, answer) in rays.iter().zip(answers) {
+            *answer = Q::answer(single::trace::<W, L, Q>(scene, ray, &mut single));
+        }
+        return;
+    }
+    let mut scratch = packet::Scratch { packet: vec![MaybeUninit::uninit(); scene.stack], single };
+    for (rays, answers) in rays.chunks(packet::LANES).zip(answers.chunks_mut(packet::LANES)) {
+        packet::trace::<W, L, R, Q>(scene, rays, answers, &mut scratch);
     }
 }

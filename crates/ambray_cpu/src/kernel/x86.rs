@@ -77,16 +77,6 @@ impl Lanes<8> for Avx2x8 {
         // SAFETY: AVX2 is enabled, see the module.
         unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0)).cast_unsigned() }
     }
-    #[inline(always)]
-    fn select(self, mask: u32, other: Self) -> Self {
-        // SAFETY: AVX2 is enabled, see the module.
-        unsafe {
-            let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
-            let chosen = _mm256_and_si256(_mm256_set1_epi32(mask.cast_signed()), bits);
-            let chosen = _mm256_cmpeq_epi32(chosen, bits);
-            Self(_mm256_blendv_ps(other.0, self.0, _mm256_castsi256_ps(chosen)))
-        }
-    }
 }
 
 impl Lanes<16> for Avx2x16 {
@@ -138,10 +128,6 @@ impl Lanes<16> for Avx2x16 {
     #[inline(always)]
     fn lt(self, other: Self) -> u32 {
         self.0.lt(other.0) | self.1.lt(other.1) << 8
-    }
-    #[inline(always)]
-    fn select(self, mask: u32, other: Self) -> Self {
-        Self(self.0.select(mask, other.0), self.1.select(mask >> 8, other.1))
     }
 }
 
@@ -202,10 +188,5 @@ impl Lanes<16> for Avx512x16 {
     fn lt(self, other: Self) -> u32 {
         // SAFETY: AVX-512 is enabled, see the module.
         u32::from(unsafe { _mm512_cmp_ps_mask::<_CMP_LT_OQ>(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn select(self, mask: u32, other: Self) -> Self {
-        // SAFETY: AVX-512 is enabled, see the module.
-        Self(unsafe { _mm512_mask_blend_ps(mask as __mmask16, other.0, self.0) })
     }
 }
