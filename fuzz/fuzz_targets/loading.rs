@@ -1,0 +1,25 @@
+//! A scene file with arbitrary content: it loads into a sound scene, or ends in a one-line error.
+
+use std::{fs, path::PathBuf, sync::OnceLock};
+
+/// Loads `content` from a file with the given extension.
+pub fn load(content: &[u8], extension: &str) {
+    static FOLDER: OnceLock<tempfile::TempDir> = OnceLock::new();
+    let folder = FOLDER.get_or_init(|| tempfile::tempdir().expect("a temporary folder"));
+    let path: PathBuf = folder.path().join("scene").with_extension(extension);
+    fs::write(&path, content).expect("the temporary folder is writable");
+    match ambray_scene::load(&path) {
+        Ok(loaded) => {
+            let scene = loaded.scene;
+            for mesh in &scene.meshes {
+                mesh.validate().expect("a loaded mesh is sound");
+                assert!((mesh.material as usize) < scene.materials.len());
+            }
+            for instance in &scene.instances {
+                assert!((instance.mesh as usize) < scene.meshes.len());
+                assert!(instance.world_from_object.is_finite());
+            }
+        }
+        Err(error) => assert_eq!(error.to_string().lines().count(), 1, "{error}"),
+    }
+}
