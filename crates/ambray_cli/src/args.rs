@@ -29,6 +29,20 @@ Which setting counts: a flag beats the settings file, which beats the preset, wh
 A --preset flag replaces the preset named in the settings file, but not the settings written out there. \
 Of a flag given twice, the last one counts.";
 
+const RENDER_NOTES: &str = "\
+How PNG shows the planes of --aov (OpenEXR holds the plain values):
+  colours        exposure, tone map and sRGB, as the picture; the albedo by sRGB alone
+  openness       grey, display value = value: 0 black, 1 white
+  depth          grey from black at the nearest surface to white at the farthest; white where nothing is seen
+  position       x, y, z as red, green, blue over the box of what is seen; black where nothing is seen
+  normals        (n + 1)/2 as red, green, blue; black where nothing is seen
+  indices        a colour of their own each; black where nothing is seen
+  ray-count      grey from 0 to the largest count
+
+A picture holds its settings: --settings picture.png makes it again.
+
+";
+
 /// Ambient lighting by ray tracing: openness, colour bleeding and pictures.
 ///
 /// Without a command, the built-in scene is rendered to ambray.png in the current folder.
@@ -43,7 +57,7 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Render a scene to a picture
-    #[command(after_long_help = PRECEDENCE)]
+    #[command(after_long_help = RENDER_NOTES.to_owned() + PRECEDENCE)]
     Render(Box<RenderArgs>),
     /// Evaluate ambient light at points of a list instead of pixels
     #[command(after_long_help = PRECEDENCE)]
@@ -323,6 +337,14 @@ fn spelled(value: &toml::Value) -> String {
     }
 }
 
+/// Advice for a command line that names no command, such as `ambray scene.glb`.
+#[must_use]
+pub fn hint(arguments: &[OsString]) -> Option<String> {
+    let first = arguments.get(1)?.to_str()?;
+    let is_command = Cli::command().get_subcommands().any(|sub| sub.get_name() == first) || first == "help";
+    (!is_command).then(|| format!("to render a scene: ambray render {first} ..."))
+}
+
 /// Parses `arguments`, the program's name first. Never exits and never panics, whatever they are.
 ///
 /// Requests for help and the version are errors too, as clap has it; their exit code is 0.
@@ -354,6 +376,14 @@ mod tests {
         assert_eq!(args.scene.scene, PathBuf::from("atrium"));
         assert_eq!(args.output, None);
         assert_eq!(args.settings.flags, SettingsPatch::default());
+    }
+
+    #[test]
+    fn a_missing_command_is_suggested() {
+        let hint = |line: &[&str]| hint(&line.iter().map(OsString::from).collect::<Vec<_>>());
+        assert_eq!(hint(&["ambray", "x.glb"]).as_deref(), Some("to render a scene: ambray render x.glb ..."));
+        assert!(hint(&["ambray", "--spp=4"]).is_some());
+        assert_eq!(hint(&["ambray", "query"]), None);
     }
 
     #[test]

@@ -26,13 +26,17 @@ use args::Command;
 pub fn run<I, T>(arguments: I) -> ExitCode
 where
     I: IntoIterator<Item = T>,
-    T: Into<OsString> + Clone,
+    T: Into<OsString>,
 {
     terminal::log_warnings();
-    let outcome = match args::parse_from(arguments) {
+    let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
+    let outcome = match args::parse_from(&arguments) {
         Ok(command) => signals::install().and_then(|()| dispatch(&command)),
         Err(error) => {
             let _ = error.print(); // a closed terminal is no reason to fail
+            if let (true, Some(hint)) = (error.use_stderr(), args::hint(&arguments)) {
+                terminal::say(&format!("  hint: {hint}"));
+            }
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(failure::EXIT_ERROR));
         }
     };

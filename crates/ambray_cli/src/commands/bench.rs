@@ -63,6 +63,9 @@ pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
             saved.as_ref().map(Target::name).unwrap_or_default()
         );
     }
+    if args.json && [&target, &saved].contains(&&Some(Target::Stdout)) {
+        bail!("--json is not allowed with output or settings on stdout: both write there");
+    }
     target.iter().chain(&saved).try_for_each(Target::check)?;
     if cfg!(debug_assertions) {
         terminal::warn("this is not a release build: times say little");

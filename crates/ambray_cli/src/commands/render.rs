@@ -25,6 +25,9 @@ pub fn run(args: &RenderArgs) -> anyhow::Result<()> {
         bail!("--json is not allowed with -o -: both write to stdout");
     }
     let saved = args.settings.save_settings.as_deref().map(Target::of);
+    if args.json && saved == Some(Target::Stdout) {
+        bail!("--json is not allowed with --save-settings -: both write to stdout");
+    }
     check_saved(saved.as_ref(), &plan)?;
 
     let source = scene_source::open(&args.scene.scene, args.scene.gltf_scene.as_deref())?;

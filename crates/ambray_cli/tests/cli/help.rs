@@ -92,6 +92,8 @@ fn wrong_usage_names_option_value_and_choices() {
     bench.run(&["render", "--threads", "9999"]).fails(&["'9999'", "--threads", "0..=1024"]);
     bench.run(&["bench", "--frames", "0"]).fails(&["'0'", "--frames"]);
     bench.run(&["query"]).fails(&["--points"]);
-    bench.run(&["paint"]).fails(&["'paint'"]);
+    bench.run(&["paint"]).fails(&["'paint'", "hint: to render a scene: ambray render paint"]);
+    bench.run(&["render", "--json", "--save-settings=-"]).fails(&["--json", "--save-settings -"]);
+    bench.run(&["bench", "--json", "-o-"]).fails(&["--json"]);
     assert_eq!(bench.files(), [""; 0]);
 }
