@@ -24,6 +24,10 @@ Examples:
 
 Exit codes: 0 done, 2 error, 130 interrupted.";
 
+const POINTS_HELP: &str = "\
+Points in the scene: CSV columns x,y,z,nx,ny,nz and optionally class (0 to 15), with or without a header, or JSON \
+lines {\"position\": [x,y,z], \"normal\": [x,y,z], \"class\": 0}; - is stdin";
+
 const PRECEDENCE: &str = "\
 Which setting counts: a flag beats the settings file, which beats the preset, which beats the default. \
 A --preset flag replaces the preset named in the settings file, but not the settings written out there. \
@@ -146,9 +150,8 @@ pub struct QueryArgs {
     /// The scene.
     #[command(flatten)]
     pub scene: SceneArgs,
-    /// Points in the scene: CSV columns x,y,z,nx,ny,nz and optionally class (0 to 15), with or without a header, or JSON
-    /// lines {"position": [x,y,z], "normal": [x,y,z], "class": 0}; - is stdin
-    #[arg(long, value_name = "FILE")]
+    /// Points in the scene.
+    #[arg(long, value_name = "FILE", help = POINTS_HELP)]
     pub points: PathBuf,
     /// Format of the points [default: JSON lines if the first character is {, else CSV]
     #[arg(long, value_enum, value_name = "FORMAT")]

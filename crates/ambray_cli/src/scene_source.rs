@@ -35,7 +35,7 @@ pub fn open(path: &Path, gltf_scene: Option<&str>) -> anyhow::Result<Source> {
         bail!("--gltf-scene is not allowed with {}: only glTF files hold several scenes", path.display());
     }
     let (scene, warnings) = if built_in {
-        (built_in_scene(), Vec::new())
+        (ambray::scene::atrium::atrium(), Vec::new())
     } else {
         let loaded = load_with(path, &LoadOptions { scene: gltf_scene.map(choice) }).map_err(|error| {
             if path.exists() {
@@ -53,23 +53,4 @@ pub fn open(path: &Path, gltf_scene: Option<&str>) -> anyhow::Result<Source> {
 
 fn choice(name: &str) -> SceneChoice {
     name.parse().map_or_else(|_| SceneChoice::Name(name.to_owned()), SceneChoice::Index)
-}
-
-fn built_in_scene() -> Scene {
-    use ambray::scene::{Instance, Material, Mesh};
-    use glam::{Affine3A, Vec3};
-    let corner = |x: f32, z: f32| Vec3::new(x, 0.0, z);
-    let positions = vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
-    let mesh = Mesh { positions, triangles: vec![[0, 2, 1], [0, 3, 2]], ..Mesh::default() };
-    let wall = Affine3A::from_rotation_x(1.5) * Affine3A::from_translation(Vec3::new(0.0, 0.0, -1.0));
-    Scene {
-        name: BUILT_IN.to_owned(),
-        meshes: vec![mesh],
-        instances: vec![
-            Instance { mesh: 0, world_from_object: Affine3A::IDENTITY },
-            Instance { mesh: 0, world_from_object: wall },
-        ],
-        materials: vec![Material::default()],
-        ..Scene::default()
-    }
 }
