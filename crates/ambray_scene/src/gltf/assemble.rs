@@ -1,6 +1,7 @@
 //! Puts the parts together: nodes in scene order become instances, cameras and lights.
 
 use std::collections::{BTreeMap, HashMap};
+use std::rc::Rc;
 
 use glam::{Affine3A, DAffine3, DQuat, DVec3, Vec3};
 
@@ -25,7 +26,17 @@ pub(super) fn assemble(
     scene: &mut Scene,
     warnings: &mut Warnings,
 ) -> Outcome<()> {
-    let mut assembly = Assembly { doc, world, scene, warnings, read: HashMap::new(), triangles: 0 };
+    let mut assembly = Assembly {
+        doc,
+        world,
+        scene,
+        warnings,
+        read: HashMap::new(),
+        joints: HashMap::new(),
+        corners: Vec::new(),
+        triangles: 0,
+        placed: 0,
+    };
     for &index in visible {
         let node = &doc.root.nodes[index];
         if let Some(mesh) = node.mesh {
@@ -50,8 +61,14 @@ struct Assembly<'a, 'd> {
     warnings: &'a mut Warnings,
     /// Primitives by glTF mesh.
     read: HashMap<Index, Vec<Shape>>,
+    /// Joint matrices by skin.
+    joints: HashMap<Index, Rc<[Affine3A]>>,
+    /// Corners of the boxes around the scene's meshes; `None` for meshes without triangles.
+    corners: Vec<Option<[Vec3; 8]>>,
     /// Triangles placed so far, instances counted each time.
     triangles: u64,
+    /// Placements so far, dropped and empty ones included.
+    placed: u64,
 }
 
 impl Assembly<'_, '_> {
@@ -69,7 +86,7 @@ impl Assembly<'_, '_> {
         let at = format!("nodes[{index}]");
         let weights = morph_weights(self.doc.root, node, mesh, shapes, &at)?;
         let joints = match node.skin {
-            Some(skin) => Some(joint_matrices(self.doc, skin, self.world, &format!("{at}.skin"))?),
+            Some(skin) => Some(self.joints(skin, &format!("{at}.skin"))?),
             None => None,
         };
         let placements = self.placements(node, index)?;
@@ -90,6 +107,16 @@ impl Assembly<'_, '_> {
             }
         }
         Ok(())
+    }
+
+    /// Joint matrices of a skin, computed once however many nodes share it.
+    fn joints(&mut self, skin: Index, at: &str) -> Outcome<Rc<[Affine3A]>> {
+        if let Some(joints) = self.joints.get(&skin) {
+            return Ok(Rc::clone(joints));
+        }
+        let joints: Rc<[Affine3A]> = joint_matrices(self.doc, skin, self.world, at)?.into();
+        self.joints.insert(skin, Rc::clone(&joints));
+        Ok(joints)
     }
 
     fn read_mesh(&mut self, mesh: Index) -> Outcome<Vec<Shape>> {
@@ -144,6 +171,7 @@ impl Assembly<'_, '_> {
         let lacks_uvs = refs.into_iter().flatten().any(|texture| texture.uv_set as usize >= mesh.uvs.len());
         self.warnings
             .tally("primitives lack the texture coordinates that their material asks for", lacks_uvs.into());
+        self.corners.push(corners(&mesh));
         self.scene.meshes.push(mesh);
         Ok((self.scene.meshes.len() - 1) as u32)
     }
@@ -156,10 +184,11 @@ impl Assembly<'_, '_> {
             let reason = format!("more than {} triangles, instances counted each time", limits::TRIANGLES);
             return Err(Fault::too_large(at, reason));
         }
-        if self.scene.instances.len() as u64 + count > limits::INSTANCES {
+        self.placed += count.max(1);
+        if self.placed > limits::INSTANCES {
             return Err(Fault::too_large(at, format!("more than {} instances", limits::INSTANCES)));
         }
-        let Some(corners) = corners(shape) else { return Ok(()) };
+        let Some(corners) = self.corners[mesh as usize] else { return Ok(()) };
         let before = self.scene.instances.len();
         let finite = |m: &&Affine3A| corners.iter().all(|&corner| m.transform_point3(corner).is_finite());
         let placed = placements.iter().filter(finite);
@@ -257,6 +286,7 @@ fn instance_transforms(
     if count > limits::INSTANCES {
         return Err(Fault::too_large(at, format!("{count} instances, the limit is {}", limits::INSTANCES)));
     }
+    doc.reserve(count * size_of::<DAffine3>() as u64, at)?;
     let vec3 = |name: &str| match attributes.get(name) {
         Some(&accessor) => doc.read::<3>(accessor, Accept::Float, &format!("{at}.{name}")),
         None => Ok(Vec::new()),
