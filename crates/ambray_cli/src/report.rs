@@ -298,7 +298,7 @@ impl RenderReport {
     pub fn text(&self) -> String {
         let mut text = scene_line(&self.scene, &self.build);
         let Self { view, times, rays, .. } = self;
-        let _ = writeln!(text, "camera   {}", camera_line(&view.camera)); // writing to a string cannot fail
+        let _ = writeln!(text, "view     {}", camera_line(&view.camera)); // writing to a string cannot fail
         let _ = writeln!(
             text,
             "frame    {}x{}, {} rays/pixel, radius {}, {} threads",

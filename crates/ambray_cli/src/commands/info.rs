@@ -229,7 +229,7 @@ impl SceneInfo {
         let view = &self.default_view;
         line("radius", format!("{} (auto)", view.radius));
         line("ambient", format!("{} (auto)", triple(view.ambient)));
-        line("camera", format!("{} (auto)", view.camera.origin));
+        line("view", format!("{} (auto)", view.camera.origin));
 
         line("meshes", grouped(meshes.len() as u64));
         let shared = |mesh: &MeshInfo| match mesh.instances {

@@ -14,7 +14,7 @@ fn picture_is_an_8_bit_png_with_texts() {
     let run =
         bench.run(&["render", "scene.obj", "--size=64x36", "--radius=2", "--near-radiance=off"]).succeeds();
     assert_eq!(bench.files(), ["ambray.png"]);
-    for part in ["scene.obj: 4 triangles", "64x36", "8 rays/pixel", "ambray.png", "primary", "camera"] {
+    for part in ["scene.obj: 4 triangles", "64x36", "8 rays/pixel", "ambray.png", "primary", "view     "] {
         assert!(run.text().contains(part), "{part} is missing in\n{}", run.text());
     }
     assert_eq!(run.stderr, "");
