@@ -7,7 +7,7 @@ use super::noise::Dice;
 use super::palette::Palette;
 use super::pose::Pose;
 use super::shapes::{Profile, Shape};
-use super::{Side, WALL};
+use super::{PITCH, Side, WALL};
 
 /// Places all furniture.
 pub(super) fn build(builder: &mut Builder, palette: &Palette) {
@@ -129,11 +129,7 @@ fn table(builder: &mut Builder, palette: &Palette) {
         .curve(Vec2::new(0.16, 0.775), Vec2::new(0.0, 0.765), 5);
     let bowl = builder.smooth("bowl", &Shape::lathe(&bowl.0, 24), palette.glaze);
     builder.place(bowl, &place);
-    let ball: Vec<Vec2> = (0..=8)
-        .map(|k| super::pose::sin_cos(180.0 * k as f32 / 8.0))
-        .map(|(s, c)| Vec2::new(s, -c) * 0.042)
-        .collect();
-    let fruit = builder.smooth("fruit", &Shape::lathe(&ball, 12), palette.orange);
+    let fruit = builder.smooth("fruit", &Shape::sphere(0.042, 12), palette.orange);
     for (x, y, z) in [
         (0.06, 0.822, 0.03),
         (-0.05, 0.822, 0.05),
@@ -145,16 +141,19 @@ fn table(builder: &mut Builder, palette: &Palette) {
     }
 }
 
+/// Height of the landing above the floor.
+pub(super) const LANDING: f32 = 0.825;
+
 /// Five steps of stone that rise along the north wall to a landing, before its door.
 fn stairs(builder: &mut Builder, palette: &Palette) {
     let mut shape = Shape::default();
     for k in 0..5 {
-        let (x, top) = (-1.30 + 0.30 * k as f32, 0.165 * (k + 1) as f32);
+        let (x, top) = (-1.50 + 0.30 * k as f32, 0.165 * (k + 1) as f32);
         shape.append(Shape::cuboid(Vec3::new(x, -0.05, 0.0), Vec3::new(x + 0.30, top - 0.035, 1.0)));
         shape.append(Shape::cuboid(Vec3::new(x - 0.025, top - 0.035, -0.02), Vec3::new(x + 0.30, top, 1.0)));
     }
-    shape.append(Shape::cuboid(Vec3::new(0.2, -0.05, 0.0), Vec3::new(1.3, 0.79, 1.0)));
-    shape.append(Shape::cuboid(Vec3::new(0.2, 0.79, -0.02), Vec3::new(1.32, 0.8251, 1.0)));
+    shape.append(Shape::cuboid(Vec3::new(0.0, -0.05, 0.0), Vec3::new(1.5, 0.79, 1.0)));
+    shape.append(Shape::cuboid(Vec3::new(0.0, 0.79, -0.02), Vec3::new(1.52, LANDING + 0.0001, 1.0)));
     let stairs = builder.flat("stairs", &shape, palette.stone);
-    builder.place(stairs, &Side::North.pose().then(&Pose::xyz(5.2, 0.0, WALL - 0.96)));
+    builder.place(stairs, &Side::North.pose().then(&Pose::xyz(2.0 * PITCH - 0.75, 0.0, WALL - 0.96)));
 }

@@ -138,7 +138,7 @@ impl Fittings {
             builder.place(self.ring, &pose.then(&Pose::xyz(x, ROD - 0.012, 0.0)));
         }
         if let Some(x) = curtain.tie {
-            let x = x + 0.045 * x.signum() * -1.0;
+            let x = x - 0.045 * x.signum();
             let squeezed = Pose::xyz(x, TIE + GAP, 0.0).scaled(Vec3::new(1.0, 2.2, 0.45));
             builder.place(self.tie, &pose.then(&squeezed));
         }

@@ -5,7 +5,7 @@ use glam::{Vec2, Vec3};
 use super::builder::{Builder, MeshId};
 use super::noise::Dice;
 use super::palette::Palette;
-use super::pose::Pose;
+use super::pose::{Pose, sin_cos};
 use super::pots::{PLANTED, VASE_EARTH};
 use super::shapes::Shape;
 use super::{COURT_FLOOR, Side};
@@ -58,7 +58,7 @@ fn vine(builder: &mut Builder, palette: &Palette, tuft: MeshId, dice: &mut Dice)
     let mut path = Vec::new();
     for k in 0..=26 {
         let t = k as f32 / 26.0;
-        let (sin, cos) = super::pose::sin_cos(200.0 + 620.0 * t);
+        let (sin, cos) = sin_cos(200.0 + 620.0 * t);
         let radius = 0.225 - 0.03 * t;
         path.push(Vec3::new(column + radius * cos, 2.16 * t, radius * sin));
     }
@@ -68,7 +68,7 @@ fn vine(builder: &mut Builder, palette: &Palette, tuft: MeshId, dice: &mut Dice)
     for side in [-1.0f32, 1.0] {
         let branch = (0..=14).map(|k| {
             let t = k as f32 / 14.0;
-            let (sin, cos) = super::pose::sin_cos(10.0 + 62.0 * t);
+            let (sin, cos) = sin_cos(10.0 + 62.0 * t);
             let radius = 1.47 + 0.05 * libm::sinf(7.0 * t);
             Vec3::new(column + side * (1.4 - radius * cos), 2.45 + radius * sin, -0.31)
         });
@@ -112,7 +112,7 @@ fn tree(builder: &mut Builder, palette: &Palette, bush: MeshId, dice: &mut Dice)
         // Even over the sphere, by the golden angle.
         let y = 1.0 - 2.0 * (k as f32 + 0.5) / BRANCHES as f32;
         let around = libm::sqrtf(1.0 - y * y);
-        let (sin, cos) = super::pose::sin_cos(137.508 * k as f32);
+        let (sin, cos) = sin_cos(137.508 * k as f32);
         let out = Vec3::new(around * cos, y, around * sin);
         let tip = crown + out * dice.between(0.42, 0.58);
         if k % 3 == 0 {
@@ -123,11 +123,7 @@ fn tree(builder: &mut Builder, palette: &Palette, bush: MeshId, dice: &mut Dice)
     }
     let wood = builder.smooth("tree wood", &wood, palette.bark);
     builder.place(wood, &foot);
-    let fruit: Vec<Vec2> = (0..=6)
-        .map(|k| super::pose::sin_cos(180.0 * k as f32 / 6.0))
-        .map(|(s, c)| Vec2::new(s, -c) * 0.042)
-        .collect();
-    let fruit = builder.smooth("orange", &Shape::lathe(&fruit, 8), palette.orange);
+    let fruit = builder.smooth("orange", &Shape::sphere(0.042, 10), palette.orange);
     for (k, (tip, out)) in tips.into_iter().enumerate() {
         let turn = libm::atan2f(out.x, out.z).to_degrees();
         let lean = libm::acosf(out.y.clamp(-1.0, 1.0)).to_degrees();

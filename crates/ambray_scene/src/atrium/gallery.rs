@@ -41,7 +41,7 @@ fn balustrades(builder: &mut Builder, palette: &Palette) {
         let tall = Side::TALL.contains(&side);
         let (fields, field, per_field) =
             if tall { (2 * side.bays(), HALF_PITCH, 4) } else { (side.bays(), PITCH, 9) };
-        for k in 0..=fields {
+        for k in posts(side, fields) {
             let x = k as f32 * field - 0.5 * length;
             builder.place(pedestal, &side.pose().then(&Pose::xyz(x, GALLERY, 0.0)));
         }
@@ -53,6 +53,11 @@ fn balustrades(builder: &mut Builder, palette: &Palette) {
             }
         }
     }
+}
+
+/// Numbers of the posts between and beside `fields`; the corners belong to the long sides.
+fn posts(side: Side, fields: u32) -> std::ops::RangeInclusive<u32> {
+    if matches!(side, Side::South | Side::North) { 0..=fields } else { 1..=fields - 1 }
 }
 
 /// A turned baluster, 0.67 m high and 0.15 m thick.
@@ -124,7 +129,7 @@ fn upper_arcade(builder: &mut Builder, palette: &Palette) {
     for side in Side::TALL {
         let place = |x: f32, y: f32| side.pose().then(&Pose::xyz(x, y, 0.0));
         let fields = 2 * side.bays();
-        for k in 0..=fields {
+        for k in posts(side, fields) {
             let x = (k as f32 - 0.5 * fields as f32) * HALF_PITCH;
             if k == 0 || k == fields {
                 builder.place(pier, &place(x, GALLERY + RAIL + 0.02));

@@ -57,7 +57,7 @@ pub(super) fn build(builder: &mut Builder, palette: &Palette) {
         builder.place(urn, &place);
     }
     let barrel_pose = [(-9.2, -2.3, 0.0), (-9.25, -3.0, 40.0)];
-    let barrel = builder.smooth("barrel", &barrel(), palette.wood);
+    let barrel = builder.smooth("barrel", &barrel().with_uv_turned(), palette.wood);
     let hoop = builder.smooth("barrel hoops", &hoops(), palette.bronze);
     for (x, z, turn) in barrel_pose {
         builder.place(barrel, &Pose::xyz(x, 0.0, z).turned(turn));
@@ -88,7 +88,7 @@ fn vase() -> Shape {
         .to(0.262, 0.62)
         .to(0.25, 0.55);
     let mut shape = Shape::lathe(&profile.0, 18);
-    shape.append(Shape::torus(0.318, 0.014, 18, 3).posed(&Pose::xyz(0.0, 0.40, 0.0)));
+    shape.append(Shape::torus(0.316, 0.014, 18, 3).posed(&Pose::xyz(0.0, 0.40, 0.0)));
     shape
 }
 

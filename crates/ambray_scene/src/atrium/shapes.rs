@@ -4,7 +4,7 @@
 
 use glam::{Vec2, Vec3};
 
-use super::pose::Pose;
+use super::pose::{Pose, sin_cos};
 
 /// Corner of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -129,6 +129,16 @@ impl Shape {
             profile.iter().map(|p| Vec3::new(p.x * cos, p.y, -p.x * sin)).collect()
         };
         Self::loft(&(0..=segments).map(ring).collect::<Vec<Vec<_>>>())
+    }
+
+    /// Ball about the origin, half as many rings as segments.
+    pub(super) fn sphere(radius: f32, segments: u32) -> Self {
+        let rings = segments / 2;
+        let profile = (0..=rings).map(|k| {
+            let (sin, cos) = sin_cos(180.0 * k as f32 / rings as f32);
+            Vec2::new(sin, -cos) * radius
+        });
+        Self::lathe(&profile.collect::<Vec<_>>(), segments)
     }
 
     /// Moulding around the outside of an upright rectangular block of half size `half` (x, z):

@@ -3,6 +3,7 @@
 use glam::{Vec2, Vec3};
 
 use super::builder::Builder;
+use super::clutter::LANDING;
 use super::palette::Palette;
 use super::pose::Pose;
 use super::shapes::{Profile, Shape};
@@ -65,7 +66,7 @@ fn pilaster() -> Shape {
 
 /// Walls behind the galleries, and the parapet of the terrace in the north.
 fn upper_walls(builder: &mut Builder, palette: &Palette, outer: Vec2) {
-    let (floor, top) = (GALLERY - 0.06, CEILING + 0.5);
+    let (floor, top) = (GALLERY - 0.05, CEILING + 0.5);
     let mut ochre = Shape::default();
     ochre.append(Shape::cuboid(
         Vec3::new(-outer.x - THICKNESS, floor, outer.y),
@@ -121,6 +122,9 @@ fn doors(builder: &mut Builder, palette: &Palette) {
         Side::North.pose().then(&Pose::xyz(-PITCH, 0.0, WALL)),
         Side::East.pose().then(&Pose::xyz(0.0, 0.0, WALL)),
     ];
+    // The door over the stairs is thicker, since the moulding of the wall ends at it.
+    let raised = Pose::xyz(2.0 * PITCH, LANDING, WALL).scaled(Vec3::new(1.0, 1.0, 3.15));
+    places.push(Side::North.pose().then(&raised));
     for side in Side::TALL {
         places.push(side.pose().then(&Pose::xyz(0.0, GALLERY, WALL)));
     }

@@ -16,9 +16,7 @@ const READ: &[&str] = &[
     "KHR_texture_transform",
 ];
 
-/// Extensions that change nothing Ambray shows, or only what it does not model, and what is then ignored.
-///
-/// A file may even require them: materials are diffuse whatever else they are.
+/// Optional extensions that change nothing Ambray shows, or only what it does not model, and what is then ignored.
 const HARMLESS: &[(&str, &str)] = &[
     ("KHR_materials_anisotropy", "anisotropic reflections"),
     ("KHR_materials_clearcoat", "clear coat"),
@@ -46,7 +44,7 @@ const WITH_FALLBACK: &[(&str, &str)] = &[
 /// Refuses files that require what we lack, and says what is ignored of the rest.
 pub(super) fn check(root: &Root, warnings: &mut Warnings) -> Outcome<()> {
     for (i, name) in root.extensions_required.iter().enumerate() {
-        if !READ.contains(&name.as_str()) && lookup(HARMLESS, name).is_none() {
+        if !READ.contains(&name.as_str()) {
             let reason = format!("required extension {} is not supported", quoted(name));
             return Err(Fault::unsupported(format!("extensionsRequired[{i}]"), reason));
         }
@@ -89,8 +87,8 @@ mod tests {
             ..Root::default()
         };
         let mut warnings = Warnings::default();
-        check(&root(&["KHR_lights_punctual", "X_a", "X_a"], &["KHR_materials_ior"]), &mut warnings)
-            .expect("nothing missing");
+        let used = ["KHR_lights_punctual", "X_a", "X_a", "KHR_materials_ior"];
+        check(&root(&used, &["KHR_lights_punctual"]), &mut warnings).expect("nothing missing");
         assert_eq!(
             warnings.into_lines(),
             [
@@ -98,12 +96,11 @@ mod tests {
                 "extension 'KHR_materials_ior' is ignored: index of refraction"
             ]
         );
-        let fault = check(&root(&[], &["KHR_draco_mesh_compression"]), &mut Warnings::default())
-            .expect_err("lacking");
-        let text = fault.in_file(std::path::Path::new("Box.gltf")).to_string();
-        assert_eq!(
-            text,
-            "Box.gltf: extensionsRequired[0]: required extension 'KHR_draco_mesh_compression' is not supported"
-        );
+        for name in ["KHR_draco_mesh_compression", "KHR_materials_transmission", "X_a"] {
+            let fault = check(&root(&[], &[name]), &mut Warnings::default()).expect_err("lacking");
+            let text = fault.in_file(std::path::Path::new("Box.gltf")).to_string();
+            let expected = format!("Box.gltf: extensionsRequired[0]: required extension '{name}' is not supported");
+            assert_eq!(text, expected);
+        }
     }
 }

@@ -18,7 +18,7 @@
 //! | cameras | read |
 //! | KHR_lights_punctual, KHR_materials_emissive_strength, KHR_materials_unlit, KHR_mesh_quantization, KHR_texture_transform, EXT_mesh_gpu_instancing, EXT_texture_webp | read |
 //! | KHR_materials_pbrSpecularGlossiness | its diffuse colour is the base colour |
-//! | other KHR_materials_*, KHR_xmp_json_ld | ignored with a warning, even if required |
+//! | other KHR_materials_*, KHR_xmp_json_ld | ignored with a warning; refused if required |
 //! | EXT_meshopt_compression, KHR_draco_mesh_compression, KHR_texture_basisu | the uncompressed fallback is read; refused without one |
 //! | other extensions | ignored with a warning; refused if required |
 
