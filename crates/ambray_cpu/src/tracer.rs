@@ -7,7 +7,7 @@ use ambray_scene::Scene;
 use glam::{Affine3A, Vec3};
 
 use crate::bvh::build::{self, Triangle};
-use crate::bvh::layout::{Blas, Block, Bounds, Node, Placed, Tlas};
+use crate::bvh::layout::{Blas, Bounds, Placed, Tlas};
 use crate::kernel::{self, Any, Closest, Query};
 use crate::{AlphaTest, BuildOptions, Isa, Opaque, Stats, Width};
 
@@ -232,7 +232,6 @@ impl<const W: usize> Levels<W> {
             isa: Isa::Portable,
             width: Width::Eight,
         };
-        debug_assert!(size_of::<Node<W>>() % 64 == 0 && size_of::<Block<W>>() % 64 == 0);
         let stack = instance_stack + kernel::stack_for(deepest, W);
         (Self { baked, shared, meshes, instance_stack, stack }, stats)
     }

@@ -184,7 +184,7 @@ impl AlphaTest for Holes {
     }
     fn accepts(&self, instance: u32, triangle: u32, u: f32, v: f32, seed: u32) -> bool {
         assert_ne!(instance, 0, "opaque meshes are not asked about");
-        (u * 7.0).fract() > 0.3 && (v * 5.0).fract() > 0.2 && (triangle ^ seed ^ instance) % 4 != 0
+        (u * 7.0).fract() > 0.3 && (v * 5.0).fract() > 0.2 && !(triangle ^ seed ^ instance).is_multiple_of(4)
     }
 }
 

@@ -15,7 +15,7 @@ pub(crate) struct Costs {
 }
 
 impl Costs {
-    pub(crate) const TRIANGLES: Self = Self { node: 1.0, leaf: 0.6, primitive: 0.06 };
+    pub(crate) const TRIANGLES: Self = Self { node: 1.0, leaf: 0.9, primitive: 0.03 };
     pub(crate) const INSTANCES: Self = Self { node: 1.0, leaf: 0.0, primitive: 4.0 };
 }
 
@@ -90,6 +90,7 @@ pub(crate) fn collapse<const W: usize>(
     wide
 }
 
+#[allow(clippy::needless_range_loop, reason = "several tables are indexed by the number of roots")]
 fn tables<const W: usize>(
     tree: &Binary,
     costs: Costs,

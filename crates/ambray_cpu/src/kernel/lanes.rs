@@ -31,8 +31,8 @@ impl<const W: usize> Array<W> {
     #[inline(always)]
     fn zip(self, other: Self, f: impl Fn(f32, f32) -> f32) -> Self {
         let mut out = [0.0; W];
-        for i in 0..W {
-            out[i] = f(self.0[i], other.0[i]);
+        for (out, (a, b)) in out.iter_mut().zip(self.0.into_iter().zip(other.0)) {
+            *out = f(a, b);
         }
         Self(out)
     }

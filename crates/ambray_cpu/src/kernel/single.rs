@@ -28,7 +28,8 @@ pub(crate) fn trace<const W: usize, L: Lanes<W>, Q: Query>(
     let mut best = Hit { t: ray.t_max, ..Hit::MISS };
     let entry = Entry { instance: None, near: 0.0, seed: ray.seed, alpha: scene.alpha };
     let done = blas::<W, L, Q>(scene.baked, Child::ROOT, &prepared, &entry, &mut best, stack);
-    if !(done && Q::ANY) && !scene.shared.nodes.is_empty() {
+    let answered = Q::ANY && done;
+    if !answered && !scene.shared.nodes.is_empty() {
         instances::<W, L, Q>(scene, ray, &prepared, &mut best, stack);
     }
     if best.is_hit() { best } else { Hit::MISS }

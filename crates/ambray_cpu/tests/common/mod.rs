@@ -118,7 +118,7 @@ impl<A: AlphaTest> BruteForce<A> {
 
     pub fn closest(&self, ray: &Ray) -> Hit {
         let mut best = Hit { t: ray.t_max, ..Hit::MISS };
-        if !(ray.t_max > 0.0) {
+        if ray.t_max <= 0.0 || ray.t_max.is_nan() {
             return Hit::MISS;
         }
         for group in &self.groups {
@@ -214,7 +214,7 @@ fn intersect(corners: &[Vec3; 3], origin: Vec3, direction: Vec3) -> Option<(f32,
     }
     let determinant = u + v + w;
     let t = (u * a.z + v * b.z + w * c.z) / determinant * shear[2];
-    if !(t > 0.0) {
+    if t <= 0.0 || t.is_nan() {
         return None;
     }
     let near = slab(&bounds(corners), origin, direction)?;
