@@ -5,7 +5,7 @@ use ambray_core::{
     sampling::{DEFAULT_SEEDS, owen_point, unit_float},
     trace::{Hit, Ray, Trace},
 };
-use ambray_scene::{Scene, SceneCamera};
+use ambray_scene::SceneCamera;
 use glam::Vec3;
 
 /// Share of the scene's extent that counts as near.
@@ -15,9 +15,8 @@ const FLAT_SHARE: f32 = 0.1;
 /// Share of the directions from the middle of the scene that must be blocked for it to be an interior.
 const INTERIOR_SHARE: f32 = 0.75;
 
-/// Radius R: a tenth of the smallest extent that is not negligible against the largest; 1 for an empty scene.
-pub(crate) fn radius(scene: &Scene) -> f32 {
-    let Some((low, high)) = scene.bounds() else { return 1.0 };
+/// Radius R: a tenth of the smallest extent that is not negligible against the largest; 1 for a single point.
+pub(crate) fn radius((low, high): (Vec3, Vec3)) -> f32 {
     let extents = (high - low).to_array();
     let largest = extents.iter().copied().fold(0.0, f32::max);
     let smallest =
@@ -25,22 +24,16 @@ pub(crate) fn radius(scene: &Scene) -> f32 {
     if smallest > 0.0 { RADIUS_SHARE * smallest } else { 1.0 }
 }
 
-/// Largest magnitude of a coordinate; 1 for an empty scene.
-pub(crate) fn reach(scene: &Scene) -> f32 {
-    scene.bounds().map_or(1.0, |(low, high)| low.abs().max(high.abs()).max_element())
-}
-
 /// A perspective camera that shows the scene, and a word on how it was found.
 ///
 /// Objects are seen from outside, from the front, the right and above. A scene that surrounds its middle is an
 /// interior and is seen from one end of it.
 pub(crate) fn camera(
-    scene: &Scene,
+    bounds: (Vec3, Vec3),
     trace: &impl Trace,
     fov: f32,
     aspect: f32,
 ) -> (SceneCamera, &'static str) {
-    let bounds = scene.bounds().unwrap_or((Vec3::NEG_ONE, Vec3::ONE));
     match interior(bounds, trace) {
         Some((eye, target)) => (looking(eye, target, fov), "inside, along the longest free way"),
         None => (outside(bounds, fov, aspect), "framed from the bounds"),
@@ -61,7 +54,7 @@ fn outside((low, high): (Vec3, Vec3), fov: f32, aspect: f32) -> SceneCamera {
     let camera = looking(middle + Vec3::new(0.55, 0.45, 1.0), middle, fov);
     let (forward, up) = (camera.forward, camera.up);
     let right = forward.cross(up);
-    let tan = (0.5 * fov).tan() / MARGIN;
+    let tan = libm::tanf(0.5 * fov) / MARGIN;
     let distance = (0..8).map(|corner| {
         let pick = |bit: u8, low: f32, high: f32| if corner & bit == 0 { low } else { high };
         let offset =
@@ -81,7 +74,7 @@ fn interior((low, high): (Vec3, Vec3), trace: &impl Trace) -> Option<(Vec3, Vec3
     let directions: Vec<Vec3> = (0..DIRECTIONS)
         .map(|i| {
             let [u, v] = owen_point(i, DEFAULT_SEEDS).map(unit_float);
-            let (sin, cos) = (std::f32::consts::TAU * v).sin_cos();
+            let (sin, cos) = libm::sincosf(std::f32::consts::TAU * v);
             let y = 1.0 - 2.0 * u;
             let r = (1.0 - y * y).sqrt();
             Vec3::new(r * cos, y, r * sin)
@@ -113,4 +106,70 @@ fn free_ways(trace: &impl Trace, origin: Vec3, directions: &[Vec3]) -> Vec<f32> 
     let mut hits = vec![Hit::MISS; rays.len()];
     trace.closest_hits(&rays, &mut hits);
     hits.iter().map(|hit| hit.t).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A sphere of radius 3 around the origin, seen from within or without.
+    struct Room;
+
+    impl Trace for Room {
+        fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit]) {
+            for (ray, hit) in rays.iter().zip(hits) {
+                let b = ray.origin.dot(ray.direction);
+                let t = -b + (b * b - ray.origin.length_squared() + 9.0).sqrt();
+                *hit = if t > 0.0 { Hit { t, instance: 0, ..Hit::MISS } } else { Hit::MISS };
+            }
+        }
+
+        fn any_hits(&self, _rays: &[Ray], _blocked: &mut [bool]) {}
+    }
+
+    /// Nothing at all.
+    struct Void;
+
+    impl Trace for Void {
+        fn closest_hits(&self, _rays: &[Ray], hits: &mut [Hit]) {
+            hits.fill(Hit::MISS);
+        }
+
+        fn any_hits(&self, _rays: &[Ray], _blocked: &mut [bool]) {}
+    }
+
+    const BOX: (Vec3, Vec3) = (Vec3::splat(-3.0), Vec3::splat(3.0));
+
+    #[test]
+    fn radius_ignores_flat_sides() {
+        assert_eq!(radius((Vec3::ZERO, Vec3::new(20.0, 10.0, 15.0))), 1.0);
+        assert_eq!(radius((Vec3::ZERO, Vec3::new(20.0, 0.0, 10.0))), 1.0);
+        assert_eq!(radius((Vec3::ONE, Vec3::ONE)), 1.0);
+    }
+
+    #[test]
+    fn rooms_are_seen_from_within_and_things_from_without() {
+        let (inside, _) = camera(BOX, &Room, 0.9, 1.5);
+        assert!(inside.position.length() < 3.0, "{inside:?}");
+        let (outside, _) = camera(BOX, &Void, 0.9, 1.5);
+        assert!(outside.position.max_element() > 3.0, "{outside:?}");
+    }
+
+    #[test]
+    fn the_whole_box_is_in_the_picture() {
+        let (fov, aspect) = (0.9_f32, 1.5_f32);
+        for high in [Vec3::splat(3.0), Vec3::new(30.0, 0.0, 1.0), Vec3::new(0.1, 50.0, 0.1)] {
+            let (camera, _) = camera((-high, high), &Void, fov, aspect);
+            let right = camera.forward.cross(camera.up);
+            for corner in 0..8 {
+                let sign = |bit: i32| if corner & bit == 0 { -1.0 } else { 1.0 };
+                let seen = high * Vec3::new(sign(1), sign(2), sign(4)) - camera.position;
+                let reach = seen.dot(camera.forward) * (0.5 * fov).tan();
+                assert!(
+                    seen.dot(camera.up).abs() <= reach && seen.dot(right).abs() <= reach * aspect,
+                    "{high}"
+                );
+            }
+        }
+    }
 }

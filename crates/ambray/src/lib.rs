@@ -24,11 +24,14 @@ mod resolve;
 
 pub use ambray_core::{
     aov::{Aov, AovKind},
+    camera,
     control::Control,
     frame::{Frame, FrameStats, GBufferPixel, RayCounts, StageTimes},
+    light,
     query::{QueryPoint, QueryResult},
     settings,
     view::View,
 };
+pub use ambray_cpu::Isa;
 pub use ambray_scene as scene;
 pub use renderer::{BuildStats, RenderError, Renderer};

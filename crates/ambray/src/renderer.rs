@@ -11,6 +11,7 @@ use ambray_core::{
 };
 use ambray_cpu::{BackendError, BuildOptions, CpuBackend};
 use ambray_scene::Scene;
+use glam::Vec3;
 
 use crate::resolve;
 
@@ -76,6 +77,8 @@ pub struct BuildStats {
 #[derive(Debug)]
 pub struct Renderer {
     scene: Arc<Scene>,
+    /// Box around the scene, found once.
+    bounds: Option<(Vec3, Vec3)>,
     backend: CpuBackend,
 }
 
@@ -88,7 +91,7 @@ impl Renderer {
     pub fn new(scene: Scene) -> Self {
         let scene = Arc::new(scene);
         let backend = CpuBackend::new(Arc::clone(&scene), BuildOptions::default());
-        Self { scene, backend }
+        Self { bounds: scene.bounds(), scene, backend }
     }
 
     /// The scene.
@@ -116,7 +119,7 @@ impl Renderer {
         if !errors.is_empty() {
             return Err(RenderError::Settings(errors));
         }
-        resolve::view(settings, &self.scene, self.backend.world())
+        resolve::view(settings, &self.scene, self.bounds, self.backend.world())
     }
 
     /// Renders a frame. The same settings and scene give the same frame, bit for bit, for any number of threads.

@@ -23,12 +23,19 @@ const SIGMA_RADIUS: f32 = 3.0;
 /// Vertical angle of view where no camera says otherwise, degrees.
 const VERTICAL_FOV: f32 = 50.0;
 
-pub(crate) fn view(settings: &Settings, scene: &Scene, trace: &impl Trace) -> Result<View, RenderError> {
-    let radius = settings.radius.value().copied().or(scene.radius).unwrap_or_else(|| framing::radius(scene));
+pub(crate) fn view(
+    settings: &Settings,
+    scene: &Scene,
+    bounds: Option<(Vec3, Vec3)>,
+    trace: &impl Trace,
+) -> Result<View, RenderError> {
+    // An empty scene is looked at as if a box of two units were there.
+    let bounds = bounds.unwrap_or((Vec3::NEG_ONE, Vec3::ONE));
+    let radius = settings.radius.value().copied().or(scene.radius).unwrap_or_else(|| framing::radius(bounds));
     let openness = openness(settings, radius);
     let rgb = |color: &Auto<Rgb>| color.value().map(|&color| Vec3::from(color));
     let ambient = rgb(&settings.ambient).or(scene.ambient).unwrap_or(Vec3::ONE);
-    let (camera, camera_origin) = camera(settings, scene, trace)?;
+    let (camera, camera_origin) = camera(settings, scene, bounds, trace)?;
     Ok(View {
         camera,
         camera_origin,
@@ -37,7 +44,7 @@ pub(crate) fn view(settings: &Settings, scene: &Scene, trace: &impl Trace) -> Re
         near_limit: settings.near_limit.unwrap_or(openness.reach()),
         ambient,
         background: rgb(&settings.background).unwrap_or(ambient),
-        offset: RayOffset::for_extent(framing::reach(scene)),
+        offset: RayOffset::for_extent(bounds.0.abs().max(bounds.1.abs()).max_element()),
         lights: lights(settings, scene),
     })
 }
@@ -66,7 +73,12 @@ fn lights(settings: &Settings, scene: &Scene) -> Vec<Light> {
 /// The camera that the settings ask for, and where it came from.
 ///
 /// A position or a target alone changes the camera of the file; without any camera the scene is framed.
-fn camera(settings: &Settings, scene: &Scene, trace: &impl Trace) -> Result<(Camera, String), RenderError> {
+fn camera(
+    settings: &Settings,
+    scene: &Scene,
+    bounds: (Vec3, Vec3),
+    trace: &impl Trace,
+) -> Result<(Camera, String), RenderError> {
     let (width, height) = (settings.size.width, settings.size.height);
     let vec3 = |value: &Auto<Triple>| value.value().map(|&value| Vec3::from(value));
     let (position, target) = (vec3(&settings.camera_position), vec3(&settings.camera_target));
@@ -77,7 +89,7 @@ fn camera(settings: &Settings, scene: &Scene, trace: &impl Trace) -> Result<(Cam
         }
         None => {
             let fov = settings.vertical_fov.unwrap_or(VERTICAL_FOV).to_radians();
-            let (camera, how) = framing::camera(scene, trace, fov, width as f32 / height as f32);
+            let (camera, how) = framing::camera(bounds, trace, fov, width as f32 / height as f32);
             (camera, how.to_owned())
         }
     };

@@ -35,7 +35,7 @@ impl Machine {
             optimized: !cfg!(debug_assertions),
             cpu: cpu_name(),
             cores: thread::available_parallelism().map_or(1, Into::into),
-            isa: ambray_cpu::Isa::detect().name(),
+            isa: ambray::Isa::detect().name(),
             os: std::env::consts::OS,
             architecture: std::env::consts::ARCH,
         }

@@ -2,7 +2,10 @@
 
 use std::{fmt::Write as _, time::Duration};
 
-use ambray::{BuildStats, Frame, RayCounts, Renderer, StageTimes, View, scene::Scene, settings::Settings};
+use ambray::{
+    BuildStats, Frame, RayCounts, Renderer, StageTimes, View, camera::Projection, scene::Scene,
+    settings::Settings,
+};
 use serde::Serialize;
 
 use crate::scene_source::Source;
@@ -125,32 +128,22 @@ pub struct CameraReport {
 }
 
 impl CameraReport {
-    /// The camera of `view`, recovered from its rays.
+    /// The camera of `view`.
     #[must_use]
     pub fn of(view: &View) -> Self {
         let camera = &view.camera;
-        let (width, height) = camera.size();
-        let forward = camera.forward();
-        // Where the rays of three pixels pierce the plane one unit before the eye; the pixels may lie outside the picture.
-        let pierce = |x, y| {
-            let ray = camera.primary_ray(x, y, 0);
-            ray.origin + ray.direction / ray.direction.dot(forward)
+        let (fov, height) = match camera.projection() {
+            Projection::Perspective { vertical_fov } => (Some(vertical_fov.to_degrees()), None),
+            Projection::Orthographic { height } => (None, Some(height)),
         };
-        let corner = pierce(0, 0);
-        let right = (pierce(width, 0) - corner).normalize_or_zero();
-        let up = (corner - pierce(0, height)).normalize_or_zero();
-        let pixel = camera.footprint(1.0);
-        let is_perspective = camera.footprint(2.0) > pixel;
-        let view_height = pixel * height as f32;
-        let degrees = (2.0 * (0.5 * view_height).atan()).to_degrees();
         Self {
             origin: view.camera_origin.clone(),
             position: camera.position().to_array(),
-            forward: forward.to_array(),
-            right: right.to_array(),
-            up: up.to_array(),
-            vertical_fov_degrees: is_perspective.then_some(degrees),
-            orthographic_height: (!is_perspective).then_some(view_height),
+            forward: camera.forward().to_array(),
+            right: camera.right().to_array(),
+            up: camera.up().to_array(),
+            vertical_fov_degrees: fov,
+            orthographic_height: height,
         }
     }
 }

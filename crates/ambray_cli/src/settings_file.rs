@@ -6,7 +6,7 @@ use std::{
     path::Path,
 };
 
-use ambray::settings::{Auto, Preset, Settings, SettingsPatch};
+use ambray::settings::{Preset, Settings, SettingsPatch};
 use anyhow::{Context as _, anyhow};
 use serde::Deserialize;
 use toml::de::DeTable;
@@ -79,15 +79,6 @@ pub fn parse(text: &str) -> Result<SettingsFile, Vec<Problem>> {
 
 fn patch(table: DeTable<'_>) -> Result<SettingsPatch, toml::de::Error> {
     SettingsPatch::deserialize(toml::de::Deserializer::from(toml::Spanned::new(0..0, table)))
-        .map(with_auto_camera)
-}
-
-/// A name is text and so is the word auto: files and flags alike take both for names.
-fn with_auto_camera(mut patch: SettingsPatch) -> SettingsPatch {
-    if patch.camera == Some(Auto::Value("auto".to_owned())) {
-        patch.camera = Some(Auto::Auto);
-    }
-    patch
 }
 
 /// Why `name = value` was refused, with what is allowed.
@@ -194,13 +185,13 @@ fn join(args: &SettingsArgs, file: &SettingsFile) -> Settings {
         preset.patch().apply(&mut settings);
     }
     file.patch.apply(&mut settings);
-    with_auto_camera(args.flags.clone()).apply(&mut settings);
+    args.flags.apply(&mut settings);
     settings
 }
 
 #[cfg(test)]
 mod tests {
-    use ambray::settings::{Rgb, Thin};
+    use ambray::settings::{Auto, Rgb, Thin};
 
     use super::*;
 

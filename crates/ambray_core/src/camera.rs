@@ -60,6 +60,24 @@ impl Camera {
         self.forward
     }
 
+    /// Unit vector to the right in the picture.
+    #[must_use]
+    pub const fn right(&self) -> Vec3 {
+        self.right
+    }
+
+    /// Unit vector up in the picture.
+    #[must_use]
+    pub const fn up(&self) -> Vec3 {
+        self.up
+    }
+
+    /// Perspective or parallel projection.
+    #[must_use]
+    pub const fn projection(&self) -> Projection {
+        self.projection
+    }
+
     /// Width and height of the picture in pixels.
     #[must_use]
     pub const fn size(&self) -> (u32, u32) {

@@ -41,7 +41,8 @@ pub struct Filter {
     cos_normal: f32,
 }
 
-/// Offsets along one axis with their weights: four taps from -1, or five whose outer ones count half.
+/// Offsets along one axis with their weights: none, four taps from -1, or five whose outer ones count half.
+const OFF: &[(i32, f32)] = &[(0, 1.0)];
 const BOX: &[(i32, f32)] = &[(-1, 1.0), (0, 1.0), (1, 1.0), (2, 1.0)];
 const CENTRED: &[(i32, f32)] = &[(-2, 0.5), (-1, 1.0), (0, 1.0), (1, 1.0), (2, 0.5)];
 
@@ -86,10 +87,31 @@ impl Filter {
         width: usize,
         y: usize,
         inputs: [&[Vec4]; PLANES],
-        outputs: [&mut [Vec4]; PLANES],
+        mut outputs: [&mut [Vec4]; PLANES],
     ) {
+        for x in 0..width {
+            let values = self.filter_pixel(guides, width, (x, y), inputs);
+            for (output, value) in outputs.iter_mut().zip(values) {
+                output[x] = value;
+            }
+        }
+    }
+
+    /// O'(p) of each plane, at pixel (x, y).
+    fn filter_pixel<const PLANES: usize>(
+        &self,
+        guides: &[Guide],
+        width: usize,
+        (x, y): (usize, usize),
+        inputs: [&[Vec4]; PLANES],
+    ) -> [Vec4; PLANES] {
+        let p = y * width + x;
+        let guide = &guides[p];
+        if !guide.is_surface() {
+            return inputs.map(|input| input[p]);
+        }
         let taps = match self.window {
-            Window::Off => &[(0, 1.0)][..],
+            Window::Off => OFF,
             Window::Box => BOX,
             Window::Centred => CENTRED,
         };
@@ -97,31 +119,23 @@ impl Filter {
         let inside = |at: usize, offset: i32, end: usize| {
             at.checked_add_signed(offset as isize).filter(|&shifted| shifted < end)
         };
-        for x in 0..width {
-            let p = y * width + x;
-            let guide = &guides[p];
-            let mut sums = [Vec4::ZERO; PLANES];
-            let mut weight = 0.0;
-            if guide.is_surface() {
-                for &(dy, ky) in taps {
-                    let Some(row) = inside(y, dy, height) else { continue };
-                    for &(dx, kx) in taps {
-                        let Some(column) = inside(x, dx, width) else { continue };
-                        let q = row * width + column;
-                        // The centre is always accepted.
-                        if q == p || (guides[q].is_surface() && self.accepts(guide, &guides[q])) {
-                            let k = kx * ky;
-                            weight += k;
-                            for (sum, input) in sums.iter_mut().zip(inputs) {
-                                *sum += k * input[q];
-                            }
-                        }
+        let mut sums = [Vec4::ZERO; PLANES];
+        let mut weight = 0.0;
+        for &(dy, ky) in taps {
+            let Some(row) = inside(y, dy, height) else { continue };
+            for &(dx, kx) in taps {
+                let Some(column) = inside(x, dx, width) else { continue };
+                let q = row * width + column;
+                // The centre is always accepted, so the weight is never zero.
+                if q == p || (guides[q].is_surface() && self.accepts(guide, &guides[q])) {
+                    let k = kx * ky;
+                    weight += k;
+                    for (sum, input) in sums.iter_mut().zip(inputs) {
+                        *sum += k * input[q];
                     }
                 }
             }
-            for plane in 0..PLANES {
-                outputs[plane][x] = if weight > 0.0 { sums[plane] / weight } else { inputs[plane][p] };
-            }
         }
+        sums.map(|sum| sum / weight)
     }
 }

@@ -264,7 +264,7 @@ mod tests {
         let chi2: f64 = bins.iter().map(|&n| (f64::from(n) - expected).powi(2) / expected).sum();
         // 63 degrees of freedom: the 99.99 % quantile is 113.
         assert!(chi2 < 113.0, "χ² = {chi2}");
-        assert!((cosine_hemisphere_pdf(Vec3::Z) - 0.318_309_9).abs() < 1e-6);
+        assert!((cosine_hemisphere_pdf(Vec3::Z) - std::f32::consts::FRAC_1_PI).abs() < 1e-6);
     }
 
     #[test]

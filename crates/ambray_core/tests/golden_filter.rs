@@ -25,7 +25,7 @@ fn settings(window: Window) -> Settings {
 #[test]
 fn golden_pictures() {
     let file = golden("filter");
-    let flat = |name: &str| list(&file[name]).iter().flat_map(|row| list(row)).cloned().collect::<Vec<_>>();
+    let flat = |name: &str| list(&file[name]).iter().flat_map(list).cloned().collect::<Vec<_>>();
     let (z, pixel) = (number(&file["z"]) as f32, number(&file["pixel_size"]) as f32);
     let guides: Vec<Guide> = flat("position")
         .iter()

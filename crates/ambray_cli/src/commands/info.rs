@@ -4,10 +4,11 @@ use std::fmt::Write as _;
 
 use ambray::{
     Renderer,
+    camera::Projection,
+    light::Light,
     scene::{AlphaMode, Material, Scene},
     settings::Settings,
 };
-use ambray_core::{camera::Projection, light::Light};
 use glam::Vec3;
 use serde::Serialize;
 

@@ -117,7 +117,6 @@ struct Sample {
 pub struct GatherScratch {
     first: FirstBatch,
     chords: Chords,
-    second: Vec<SecondBatch>,
     radiance: RadianceScratch,
 }
 
@@ -154,13 +153,12 @@ fn gather_batch(
     let spp = params.samples.spp() as usize;
     let samples = scratch.first.samples();
     if params.thin == Thin::Off {
-        scratch.second.clear();
-        scratch.second.resize(points.len(), SecondBatch::OPEN);
+        scratch.chords.skip(points.len());
     } else {
-        scratch.chords.trace(world, params, points, samples, &mut scratch.radiance, &mut scratch.second, out);
+        scratch.chords.trace(world, params, points, samples, &mut scratch.radiance, out);
     }
     for (i, gathered) in out.iter_mut().enumerate() {
-        combine(params, &samples[i * spp..][..spp], &scratch.second[i], gathered);
+        combine(params, &samples[i * spp..][..spp], &scratch.chords.results()[i], gathered);
     }
 }
 

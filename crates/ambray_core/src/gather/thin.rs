@@ -50,11 +50,24 @@ pub(super) struct Chords {
     /// Missed rays of each point of a run, each list ended by the next one's start.
     missed: Vec<u32>,
     starts: Vec<usize>,
+    results: Vec<SecondBatch>,
+    /// Σ blocked and Σ of all, of each point.
+    sums: Vec<(f32, f32)>,
 }
 
 impl Chords {
-    /// Traces the chords of `points`, whose first batch is in `samples`, and writes A2 and the radiance of the blocked
-    /// chords to `second`.
+    /// What the second batch says about each point.
+    pub(super) fn results(&self) -> &[SecondBatch] {
+        &self.results
+    }
+
+    /// No second batch for `points` points.
+    pub(super) fn skip(&mut self, points: usize) {
+        self.results.clear();
+        self.results.resize(points, SecondBatch::OPEN);
+    }
+
+    /// Traces the chords of `points`, whose first batch is in `samples`: A2 and the radiance of the blocked chords.
     pub(super) fn trace(
         &mut self,
         world: &impl World,
@@ -62,7 +75,6 @@ impl Chords {
         points: &[ShadedPoint],
         samples: &[Sample],
         radiance: &mut RadianceScratch,
-        second: &mut Vec<SecondBatch>,
         out: &mut [Gathered],
     ) {
         self.make_rays(params, points, samples);
@@ -81,12 +93,14 @@ impl Chords {
             world.closest_hits(&self.rays, &mut self.hits);
             self.weigh_hits(world, params, points, radiance);
         }
-        self.sum_up(params, second, points.len(), out);
+        self.skip(points.len());
+        self.sum_up(params, out);
         radiance.evaluate(world, params);
         for (chord, radiance, shadow_rays) in radiance.results(params) {
             let chord = &self.chords[chord as usize];
-            second[chord.point as usize].weight += chord.weight;
-            second[chord.point as usize].weighted_radiance += chord.weight * radiance;
+            let result = &mut self.results[chord.point as usize];
+            result.weight += chord.weight;
+            result.weighted_radiance += chord.weight * radiance;
             out[chord.point as usize].shadow_rays += shadow_rays;
         }
     }
@@ -120,22 +134,15 @@ impl Chords {
     }
 
     /// A2 of each point (spec §8.1 and §8.3), and its counts of chords.
-    fn sum_up(
-        &self,
-        params: &GatherParams<'_>,
-        second: &mut Vec<SecondBatch>,
-        points: usize,
-        out: &mut [Gathered],
-    ) {
-        second.clear();
-        second.resize(points, SecondBatch::OPEN);
+    fn sum_up(&mut self, params: &GatherParams<'_>, out: &mut [Gathered]) {
         let spp = params.samples.spp() as f32;
-        let mut sums = vec![(0.0_f32, 0.0_f32); points];
+        self.sums.clear();
+        self.sums.resize(out.len(), (0.0, 0.0));
         for chord in &self.chords {
             let gathered = &mut out[chord.point as usize];
             gathered.chord_rays += 1;
             gathered.chord_hits += u32::from(chord.blocked > 0.0);
-            let (blocked, total) = &mut sums[chord.point as usize];
+            let (blocked, total) = &mut self.sums[chord.point as usize];
             match params.thin {
                 Thin::Paper => {
                     *blocked += chord.length * chord.blocked;
@@ -147,9 +154,9 @@ impl Chords {
                 }
             }
         }
-        for (second, (blocked, total)) in second.iter_mut().zip(sums) {
-            if total > 0.0 {
-                second.openness = 1.0 - blocked / total;
+        for (result, (blocked, total)) in self.results.iter_mut().zip(&self.sums) {
+            if *total > 0.0 {
+                result.openness = 1.0 - blocked / total;
             }
         }
     }

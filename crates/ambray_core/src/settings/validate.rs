@@ -156,6 +156,8 @@ mod tests {
         };
         let text = toml::to_string(&settings).expect("settings are plain data");
         assert_eq!(toml::from_str::<Settings>(&text).expect("what was written can be read"), settings);
+        let camera = |text: &str| toml::from_str::<Settings>(text).map(|settings| settings.camera);
+        assert_eq!(camera("camera = \"auto\""), Ok(Auto::Auto));
         assert!(toml::from_str::<Settings>("raduis = 1").is_err(), "an unknown key passed");
         assert!(toml::from_str::<Settings>("radius = \"wide\"").is_err(), "a word passed for a number");
     }

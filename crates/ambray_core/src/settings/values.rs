@@ -20,12 +20,12 @@ fn expected(what: &str) -> ValueError {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(untagged, expecting = "expected a value or \"auto\"")]
 pub enum Auto<T> {
-    /// The value itself.
-    Value(T),
-    /// Chosen from the scene.
+    /// Chosen from the scene. The word comes first, so that it is not taken for a name.
     #[serde(with = "auto_word")]
     #[default]
     Auto,
+    /// The value itself.
+    Value(T),
 }
 
 mod auto_word {
@@ -59,12 +59,6 @@ impl<T: Copy> Auto<T> {
     #[must_use]
     pub fn unwrap_or(&self, default: T) -> T {
         self.value().copied().unwrap_or(default)
-    }
-}
-
-impl<T> From<T> for Auto<T> {
-    fn from(value: T) -> Self {
-        Self::Value(value)
     }
 }
 
@@ -200,6 +194,8 @@ mod tests {
         assert_eq!("0.5".parse(), Ok(Rgb([0.5; 3])));
         assert_eq!("auto".parse::<Auto<f32>>(), Ok(Auto::Auto));
         assert_eq!("2".parse::<Auto<f32>>(), Ok(Auto::Value(2.0)));
+        assert_eq!("auto".parse::<Auto<String>>(), Ok(Auto::Auto));
+        assert_eq!("nave".parse(), Ok(Auto::Value("nave".to_owned())));
         for size in ["640", "640x", "x", "-1x4", "640x360x1", "4294967296x1"] {
             assert!(size.parse::<Size>().is_err(), "{size}");
         }

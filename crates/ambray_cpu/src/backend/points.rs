@@ -7,7 +7,7 @@ use ambray_core::{
     control::{Cancelled, Control},
     gather::{GatherParams, GatherScratch, Gathered, ShadedPoint, gather},
     query::{QueryPoint, QueryResult},
-    sampling::PixelKey,
+    sampling::{PixelKey, pcg},
     settings::Settings,
     view::View,
 };
@@ -28,14 +28,10 @@ pub(super) fn run(
 ) -> Result<Vec<QueryResult>, Cancelled> {
     let mut results = vec![QueryResult::default(); points.len()];
     let (count, done) = (points.len(), AtomicUsize::new(0));
-    let chunks = points.par_chunks(CHUNK).zip(results.par_chunks_mut(CHUNK)).enumerate();
-    chunks.try_for_each_init(GatherScratch::default, |scratch, (chunk, (points, results))| {
+    let chunks = points.par_chunks(CHUNK).zip(results.par_chunks_mut(CHUNK));
+    chunks.try_for_each_init(GatherScratch::default, |scratch, (points, results)| {
         control.check()?;
-        let shaded: Vec<_> = points
-            .iter()
-            .enumerate()
-            .map(|(i, point)| shaded_point(point, (chunk * CHUNK + i) as u32, settings))
-            .collect();
+        let shaded: Vec<_> = points.iter().map(|point| shaded_point(point, settings)).collect();
         let mut gathered = vec![Gathered::default(); points.len()];
         gather(world, params, &shaded, scratch, &mut gathered);
         for (result, gathered) in results.iter_mut().zip(&gathered) {
@@ -48,9 +44,11 @@ pub(super) fn run(
     Ok(results)
 }
 
-fn shaded_point(point: &QueryPoint, index: u32, settings: &Settings) -> ShadedPoint {
+fn shaded_point(point: &QueryPoint, settings: &Settings) -> ShadedPoint {
     let normal = point.normal.normalize();
-    let hash = PixelKey::new(index, 0, settings.frame, settings.seed).hash;
+    // A point has no pixel: its position takes that part, so that the result does not depend on its place in the list.
+    let [x, y, z] = point.position.to_array().map(f32::to_bits);
+    let hash = PixelKey::new(x, y.wrapping_add(pcg(z)), settings.frame, settings.seed).hash;
     let key = PixelKey { class: point.class, hash };
     ShadedPoint { position: point.position, geometric_normal: normal, normal, key }
 }

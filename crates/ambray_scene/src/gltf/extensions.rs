@@ -99,7 +99,8 @@ mod tests {
         for name in ["KHR_draco_mesh_compression", "KHR_materials_transmission", "X_a"] {
             let fault = check(&root(&[], &[name]), &mut Warnings::default()).expect_err("lacking");
             let text = fault.in_file(std::path::Path::new("Box.gltf")).to_string();
-            let expected = format!("Box.gltf: extensionsRequired[0]: required extension '{name}' is not supported");
+            let expected =
+                format!("Box.gltf: extensionsRequired[0]: required extension '{name}' is not supported");
             assert_eq!(text, expected);
         }
     }
