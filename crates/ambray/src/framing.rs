@@ -5,14 +5,14 @@ use ambray_core::{
     sampling::{DEFAULT_SEEDS, owen_point, unit_float},
     trace::{Hit, Ray, Trace},
 };
-use ambray_scene::SceneCamera;
+use ambray_scene::{Scene, SceneCamera};
 use glam::Vec3;
 
 /// Share of the scene's extent that counts as near.
 const RADIUS_SHARE: f32 = 0.1;
 /// Extents below this share of the largest one do not limit the radius: a plane has no height.
 const FLAT_SHARE: f32 = 0.1;
-/// Share of the directions from the middle of the scene that must be blocked for it to be an interior.
+/// Share of the directions from the middle of the scene that must meet the front of a surface for it to be an interior.
 const INTERIOR_SHARE: f32 = 0.75;
 
 /// Radius R: a tenth of the smallest extent that is not negligible against the largest; 1 for a single point.
@@ -27,14 +27,15 @@ pub(crate) fn radius((low, high): (Vec3, Vec3)) -> f32 {
 /// A perspective camera that shows the scene, and a word on how it was found.
 ///
 /// Objects are seen from outside, from the front, the right and above. A scene that surrounds its middle is an
-/// interior and is seen from one end of it.
+/// interior and is seen from one end of it; surfaces that turn their backs to the middle are the skin of an object.
 pub(crate) fn camera(
+    scene: &Scene,
     bounds: (Vec3, Vec3),
     trace: &impl Trace,
     fov: f32,
     aspect: f32,
 ) -> (SceneCamera, &'static str) {
-    match interior(bounds, trace) {
+    match interior(scene, bounds, trace) {
         Some((eye, target)) => (looking(eye, target, fov), "inside, along the longest free way"),
         None => (outside(bounds, fov, aspect), "framed from the bounds"),
     }
@@ -67,7 +68,7 @@ fn outside((low, high): (Vec3, Vec3), fov: f32, aspect: f32) -> SceneCamera {
 }
 
 /// Eye and target within a scene that surrounds its middle.
-fn interior((low, high): (Vec3, Vec3), trace: &impl Trace) -> Option<(Vec3, Vec3)> {
+fn interior(scene: &Scene, (low, high): (Vec3, Vec3), trace: &impl Trace) -> Option<(Vec3, Vec3)> {
     const DIRECTIONS: u32 = 256;
     let middle = 0.5 * (low + high);
     let extent = high - low;
@@ -80,10 +81,12 @@ fn interior((low, high): (Vec3, Vec3), trace: &impl Trace) -> Option<(Vec3, Vec3
             Vec3::new(r * cos, y, r * sin)
         })
         .collect();
-    let free = free_ways(trace, middle, &directions);
-    // Near blockers mean that the middle lies within an object, not within a room.
+    let hits = closest_hits(trace, middle, &directions);
+    // Near blockers mean that the middle lies within a thing, not within a room.
     let clearance = 0.05 * extent.max_element();
-    let around = free.iter().filter(|t| t.is_finite() && **t > clearance).count();
+    let wall =
+        |(hit, direction): (&Hit, &Vec3)| hit.is_hit() && hit.t > clearance && faces(scene, hit, *direction);
+    let around = hits.iter().zip(&directions).filter(|&pair| wall(pair)).count();
     if (around as f32) < INTERIOR_SHARE * DIRECTIONS as f32 {
         return None;
     }
@@ -99,32 +102,56 @@ fn interior((low, high): (Vec3, Vec3), trace: &impl Trace) -> Option<(Vec3, Vec3
     Some(if clear > 0.02 * extent.max_element() { (eye, target) } else { (middle, middle - side) })
 }
 
+/// Whether the triangle of `hit` turns its front to a ray along `direction`: counter-clockwise, unless mirrored (glTF 2.0,
+/// §3.7.2.1).
+fn faces(scene: &Scene, hit: &Hit, direction: Vec3) -> bool {
+    let instance = &scene.instances[hit.instance as usize];
+    let world = &instance.world_from_object;
+    let [a, b, c] =
+        scene.meshes[instance.mesh as usize].corners(hit.triangle).map(|p| world.transform_point3(p));
+    (b - a).cross(c - a).dot(direction) * world.matrix3.determinant().signum() < 0.0
+}
+
 /// Distance to the first hit from `origin` along each of the unit `directions`.
 fn free_ways(trace: &impl Trace, origin: Vec3, directions: &[Vec3]) -> Vec<f32> {
+    closest_hits(trace, origin, directions).iter().map(|hit| hit.t).collect()
+}
+
+fn closest_hits(trace: &impl Trace, origin: Vec3, directions: &[Vec3]) -> Vec<Hit> {
     let ray = |&direction: &Vec3| Ray { origin, t_max: f32::INFINITY, direction, seed: 0 };
     let rays: Vec<Ray> = directions.iter().map(ray).collect();
     let mut hits = vec![Hit::MISS; rays.len()];
     trace.closest_hits(&rays, &mut hits);
-    hits.iter().map(|hit| hit.t).collect()
+    hits
 }
 
 #[cfg(test)]
 mod tests {
+    use ambray_cpu::{BuildOptions, Opaque, Tracer};
+    use ambray_scene::{Instance, Material, Mesh};
+    use glam::Affine3A;
+
     use super::*;
 
-    /// A sphere of radius 3 around the origin, seen from within or without.
-    struct Room;
+    /// A box of half size 3 around the origin whose front is inside, or outside if it is turned.
+    fn room(turned: bool) -> (Scene, Tracer) {
+        let corner = |i: u32| Vec3::new(sign(i & 1), sign(i & 2), sign(i & 4)) * 3.0;
+        let faces = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
+        let triangles = faces.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
+        let triangles = triangles.map(|[a, b, c]| if turned { [a, c, b] } else { [a, b, c] }).collect();
+        let mesh = Mesh { positions: (0..8).map(corner).collect(), triangles, ..Mesh::default() };
+        let scene = Scene {
+            meshes: vec![mesh],
+            instances: vec![Instance { mesh: 0, world_from_object: Affine3A::IDENTITY }],
+            materials: vec![Material::default()],
+            ..Scene::default()
+        };
+        let tracer = Tracer::build(&scene, Opaque, BuildOptions::default());
+        (scene, tracer)
+    }
 
-    impl Trace for Room {
-        fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit]) {
-            for (ray, hit) in rays.iter().zip(hits) {
-                let b = ray.origin.dot(ray.direction);
-                let t = -b + (b * b - ray.origin.length_squared() + 9.0).sqrt();
-                *hit = if t > 0.0 { Hit { t, instance: 0, ..Hit::MISS } } else { Hit::MISS };
-            }
-        }
-
-        fn any_hits(&self, _rays: &[Ray], _blocked: &mut [bool]) {}
+    fn sign(bit: u32) -> f32 {
+        if bit == 0 { -1.0 } else { 1.0 }
     }
 
     /// Nothing at all.
@@ -149,9 +176,11 @@ mod tests {
 
     #[test]
     fn rooms_are_seen_from_within_and_things_from_without() {
-        let (inside, _) = camera(BOX, &Room, 0.9, 1.5);
-        assert!(inside.position.length() < 3.0, "{inside:?}");
-        let (outside, _) = camera(BOX, &Void, 0.9, 1.5);
+        let (scene, tracer) = room(false);
+        let (inside, _) = camera(&scene, BOX, &tracer, 0.9, 1.5);
+        assert!(inside.position.abs().max_element() < 3.0, "{inside:?}");
+        let (scene, tracer) = room(true);
+        let (outside, _) = camera(&scene, BOX, &tracer, 0.9, 1.5);
         assert!(outside.position.max_element() > 3.0, "{outside:?}");
     }
 
@@ -159,11 +188,10 @@ mod tests {
     fn the_whole_box_is_in_the_picture() {
         let (fov, aspect) = (0.9_f32, 1.5_f32);
         for high in [Vec3::splat(3.0), Vec3::new(30.0, 0.0, 1.0), Vec3::new(0.1, 50.0, 0.1)] {
-            let (camera, _) = camera((-high, high), &Void, fov, aspect);
+            let (camera, _) = camera(&Scene::default(), (-high, high), &Void, fov, aspect);
             let right = camera.forward.cross(camera.up);
-            for corner in 0..8 {
-                let sign = |bit: i32| if corner & bit == 0 { -1.0 } else { 1.0 };
-                let seen = high * Vec3::new(sign(1), sign(2), sign(4)) - camera.position;
+            for i in 0..8 {
+                let seen = high * Vec3::new(sign(i & 1), sign(i & 2), sign(i & 4)) - camera.position;
                 let reach = seen.dot(camera.forward) * (0.5 * fov).tan();
                 assert!(
                     seen.dot(camera.up).abs() <= reach && seen.dot(right).abs() <= reach * aspect,

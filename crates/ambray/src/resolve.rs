@@ -89,7 +89,7 @@ fn camera(
         }
         None => {
             let fov = settings.vertical_fov.unwrap_or(VERTICAL_FOV).to_radians();
-            let (camera, how) = framing::camera(bounds, trace, fov, width as f32 / height as f32);
+            let (camera, how) = framing::camera(scene, bounds, trace, fov, width as f32 / height as f32);
             (camera, how.to_owned())
         }
     };
