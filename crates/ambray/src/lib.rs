@@ -35,3 +35,8 @@ pub use ambray_core::{
 pub use ambray_cpu::Isa;
 pub use ambray_scene as scene;
 pub use renderer::{BuildStats, RenderError, Renderer};
+
+/// The code in the README compiles.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

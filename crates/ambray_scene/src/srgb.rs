@@ -22,7 +22,7 @@ pub(crate) fn decoded() -> &'static [f32; 256] {
 }
 
 fn decode(encoded: f64) -> f64 {
-    if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+    if encoded <= 0.04045 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) }
 }
 
 /// Steps of the first guess of [`encode`].

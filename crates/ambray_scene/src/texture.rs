@@ -115,7 +115,7 @@ impl Sampler {
     #[must_use]
     pub fn sample(&self, image: &Image, uv: Vec2, width: f32) -> Vec4 {
         let full = &image.levels[0];
-        let level = (width * full.width.max(full.height) as f32).log2();
+        let level = libm::log2f(width * full.width.max(full.height) as f32);
         // The logarithm of negative widths is NaN.
         if level.is_nan() || level <= 0.0 {
             return self.at_level(image, 0, self.mag, uv);

@@ -103,7 +103,7 @@ fn texture_ref(
 fn uv_transform(json: &json::TextureTransform) -> Affine2 {
     let offset = json.offset.map_or(Vec2::ZERO, Vec2::from);
     let scale = json.scale.map_or(Vec2::ONE, Vec2::from);
-    let (sin, cos) = json.rotation.unwrap_or(0.0).sin_cos();
+    let (sin, cos) = libm::sincosf(json.rotation.unwrap_or(0.0));
     // The extension counts angles against the sense of mathematics: v points down.
     let rotation = Mat2::from_cols(Vec2::new(cos, -sin), Vec2::new(sin, cos));
     Affine2::from_mat2_translation(rotation * Mat2::from_diagonal(scale), offset)

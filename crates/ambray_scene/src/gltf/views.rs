@@ -71,7 +71,7 @@ pub(super) fn light(json: &json::Light, world: DAffine3, at: &str) -> Outcome<Op
         "point" => None,
         "spot" => match (cone_angles(json, at)?, direction(world, DVec3::NEG_Z)) {
             ((inner, outer), Some(axis)) => {
-                Some(Cone { axis, cos_inner: inner.cos(), cos_outer: outer.cos() })
+                Some(Cone { axis, cos_inner: libm::cosf(inner), cos_outer: libm::cosf(outer) })
             }
             (_, None) => return Ok(None),
         },
