@@ -27,6 +27,8 @@ pub struct Camera {
     right: Vec3,
     up: Vec3,
     projection: Projection,
+    /// Half the height of the picture at depth 1, or anywhere in parallel projection.
+    half_height: f32,
     width: u32,
     height: u32,
 }
@@ -45,7 +47,11 @@ impl Camera {
         height: u32,
     ) -> Self {
         let right = forward.cross(up).try_normalize().unwrap_or_else(|| forward.any_orthonormal_vector());
-        Self { position, forward, right, up: right.cross(forward), projection, width, height }
+        let half_height = match projection {
+            Projection::Perspective { vertical_fov } => libm::tanf(0.5 * vertical_fov),
+            Projection::Orthographic { height } => 0.5 * height,
+        };
+        Self { position, forward, right, up: right.cross(forward), projection, half_height, width, height }
     }
 
     /// Eye point, world space.
@@ -87,17 +93,14 @@ impl Camera {
     /// Primary ray through the centre of pixel (x, y), unbounded.
     #[must_use]
     pub fn primary_ray(&self, x: u32, y: u32, seed: u32) -> Ray {
-        // Picture coordinates: x to the right, y up, y from -1 to 1 over the height of the picture.
-        let half = 0.5 * self.height as f32;
-        let (px, py) = ((x as f32 + 0.5 - 0.5 * self.width as f32) / half, (half - y as f32 - 0.5) / half);
+        // Place in the picture plane: x to the right, y up, scaled so that the picture reaches up to half_height.
+        let scale = self.half_height / (0.5 * self.height as f32);
+        let right = (x as f32 + 0.5 - 0.5 * self.width as f32) * scale;
+        let up = (0.5 * self.height as f32 - y as f32 - 0.5) * scale;
+        let offset = self.right * right + self.up * up;
         let (origin, direction) = match self.projection {
-            Projection::Perspective { vertical_fov } => {
-                let tan = libm::tanf(0.5 * vertical_fov);
-                (self.position, (self.forward + self.right * (px * tan) + self.up * (py * tan)).normalize())
-            }
-            Projection::Orthographic { height } => {
-                (self.position + (self.right * px + self.up * py) * (0.5 * height), self.forward)
-            }
+            Projection::Perspective { .. } => (self.position, (self.forward + offset).normalize()),
+            Projection::Orthographic { .. } => (self.position + offset, self.forward),
         };
         Ray { origin, t_max: f32::INFINITY, direction, seed }
     }
@@ -111,11 +114,62 @@ impl Camera {
     /// Size of a pixel at view depth `depth`, scene units: z · 2 tan(fov/2)/height (spec §7).
     #[must_use]
     pub fn footprint(&self, depth: f32) -> f32 {
+        let pixel = self.half_height / (0.5 * self.height as f32);
         match self.projection {
-            Projection::Perspective { vertical_fov } => {
-                depth * 2.0 * libm::tanf(0.5 * vertical_fov) / self.height as f32
-            }
-            Projection::Orthographic { height } => height / self.height as f32,
+            Projection::Perspective { .. } => depth * pixel,
+            Projection::Orthographic { .. } => pixel,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const WIDTH: u32 = 640;
+    const HEIGHT: u32 = 360;
+
+    fn camera(projection: Projection) -> Camera {
+        Camera::new(Vec3::new(1.0, 2.0, 3.0), Vec3::NEG_Z, Vec3::Y, projection, WIDTH, HEIGHT)
+    }
+
+    #[test]
+    fn rays_span_the_angle_of_view() {
+        let camera = camera(Projection::Perspective { vertical_fov: 1.0 });
+        let (top, bottom) = (camera.primary_ray(320, 0, 0), camera.primary_ray(320, HEIGHT - 1, 0));
+        let angle = top.direction.angle_between(bottom.direction);
+        // From the middle of the first pixel to the middle of the last one.
+        let expected = 2.0 * (0.5_f32.tan() * 359.0 / 360.0).atan();
+        assert!((angle - expected).abs() < 1e-5, "{angle} for {expected}");
+        assert!(top.direction.y > 0.0 && camera.primary_ray(639, 180, 0).direction.x > 0.0);
+        assert_eq!(top.origin, camera.position());
+    }
+
+    #[test]
+    fn neighbouring_rays_are_a_footprint_apart() {
+        for projection in
+            [Projection::Perspective { vertical_fov: 0.8 }, Projection::Orthographic { height: 4.0 }]
+        {
+            let camera = camera(projection);
+            let at_depth = |x: u32, y: u32, depth: f32| {
+                let ray = camera.primary_ray(x, y, 0);
+                ray.origin + ray.direction * (depth / ray.direction.dot(camera.forward()))
+            };
+            for depth in [1.0, 7.0] {
+                let (a, b) = (at_depth(100, 50, depth), at_depth(100, 51, depth));
+                assert!(
+                    (a.distance(b) / camera.footprint(depth) - 1.0).abs() < 1e-3,
+                    "{projection:?} at {depth}"
+                );
+                assert!((camera.depth(a) - depth).abs() < 1e-5);
+            }
+        }
+    }
+
+    #[test]
+    fn looking_straight_up_is_defined() {
+        let camera =
+            Camera::new(Vec3::ZERO, Vec3::Y, Vec3::Y, Projection::Orthographic { height: 1.0 }, 2, 2);
+        assert!(camera.right().is_normalized() && camera.up().is_normalized());
     }
 }

@@ -91,3 +91,48 @@ pub fn direct_irradiance(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trace::Hit;
+
+    /// Blocks every ray that goes towards negative x.
+    struct HalfBlocked;
+
+    impl Trace for HalfBlocked {
+        fn closest_hits(&self, _rays: &[Ray], _hits: &mut [Hit]) {}
+
+        fn any_hits(&self, rays: &[Ray], blocked: &mut [bool]) {
+            rays.iter().zip(blocked).for_each(|(ray, blocked)| *blocked = ray.direction.x < 0.0);
+        }
+    }
+
+    fn receive(lights: &[Light], normal: Vec3, shadows: bool) -> Received {
+        let receiver = Receiver { position: Vec3::ZERO, geometric_normal: Vec3::Y, normal, seed: 0 };
+        let mut received = [Received::default()];
+        let lighting = DirectLighting { lights, offset: RayOffset::UNIT, shadows };
+        direct_irradiance(&HalfBlocked, lighting, &[receiver], &mut DirectScratch::default(), &mut received);
+        received[0]
+    }
+
+    #[test]
+    fn cosine_shadow_and_horizon() {
+        let sun = |x: f32, y: f32| Light::Directional {
+            to_light: Vec3::new(x, y, 0.0).normalize(),
+            irradiance: Vec3::new(2.0, 1.0, 0.5),
+        };
+        let free = receive(&[sun(0.6, 0.8)], Vec3::Y, true);
+        assert!(free.irradiance.abs_diff_eq(Vec3::new(1.6, 0.8, 0.4), 1e-6) && free.shadow_rays == 1);
+        // Both suns shine, but one is blocked; without shadows it is not, and no rays are traced.
+        let both = [sun(0.6, 0.8), sun(-0.6, 0.8)];
+        assert_eq!(receive(&both, Vec3::Y, true), Received { shadow_rays: 2, ..free });
+        let unshadowed = receive(&both, Vec3::Y, false);
+        assert!(
+            unshadowed.irradiance.abs_diff_eq(2.0 * free.irradiance, 1e-6) && unshadowed.shadow_rays == 0
+        );
+        // Below the geometric horizon nothing arrives, even where the shading normal faces the light.
+        assert_eq!(receive(&[sun(0.9, -0.1)], Vec3::X, true), Received::default());
+        assert_eq!(receive(&[sun(-0.9, 0.1)], Vec3::X, true), Received::default());
+    }
+}

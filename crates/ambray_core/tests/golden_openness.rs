@@ -3,36 +3,19 @@
 mod common;
 
 use ambray_core::{
-    gather::{GatherParams, GatherScratch, Gathered, ShadedPoint, gather},
-    offset::RayOffset,
-    sampling::{PixelKey, SampleSets},
-    settings::{NearRadiance, RadianceSource, Sampling, Sequence, Thin},
+    gather::Gathered,
+    sampling::SampleSets,
+    settings::{NearRadiance, Sampling, Sequence},
 };
-use common::{Shapes, golden, list, measure, number, vec3};
-use glam::Vec3;
+use common::{gather_at, golden, list, number, vec3};
 use serde_json::Value;
 
 fn evaluate(case: &Value, spp: u32, near_radiance: NearRadiance) -> Gathered {
-    let (openness, radius) = measure(&case["mu"]);
-    let params = GatherParams {
-        openness,
-        radius,
-        near_radiance,
-        near_limit: case.get("limit").map_or(f32::INFINITY, |limit| number(limit) as f32),
-        source: RadianceSource::Albedo,
-        thin: Thin::Off,
-        thin_edge: false,
-        ambient: Vec3::ONE,
-        lights: &[],
-        offset: RayOffset::UNIT,
-        samples: &SampleSets::new(Sampling::Same, Sequence::Owen, spp, 0, 0),
-    };
-    let normal = vec3(&case["normal"]);
-    let key = PixelKey::default();
-    let point = ShadedPoint { position: vec3(&case["point"]), geometric_normal: normal, normal, key };
-    let mut out = [Gathered::default()];
-    gather(&Shapes::new(&case["geometry"]), &params, &[point], &mut GatherScratch::default(), &mut out);
-    out[0]
+    let samples = SampleSets::new(Sampling::Same, Sequence::Owen, spp, 0, 0);
+    gather_at(case, &samples, |params| {
+        params.near_radiance = near_radiance;
+        params.near_limit = case.get("limit").map_or(params.near_limit, |limit| number(limit) as f32);
+    })
 }
 
 fn check(file: &str, count: usize) {

@@ -3,36 +3,18 @@
 mod common;
 
 use ambray_core::{
-    gather::{GatherParams, GatherScratch, Gathered, ShadedPoint, gather},
-    offset::RayOffset,
-    sampling::{PixelKey, SampleSets},
-    settings::{NearRadiance, RadianceSource, Sampling, Sequence, Thin},
+    gather::Gathered,
+    sampling::SampleSets,
+    settings::{NearRadiance, Sampling, Sequence, Thin},
 };
-use common::{Shapes, golden, integer, list, measure, number, vec3};
+use common::{gather_at, golden, integer, list, number};
 use glam::{Vec2, Vec3};
 use serde_json::{Value, json};
 
 fn evaluate(case: &Value, samples: &SampleSets, thin: Thin, thin_edge: bool, near: NearRadiance) -> Gathered {
-    let (openness, radius) = measure(&case["mu"]);
-    let params = GatherParams {
-        openness,
-        radius,
-        near_radiance: near,
-        near_limit: radius,
-        source: RadianceSource::Albedo,
-        thin,
-        thin_edge,
-        ambient: Vec3::ONE,
-        lights: &[],
-        offset: RayOffset::UNIT,
-        samples,
-    };
-    let normal = vec3(&case["normal"]);
-    let key = PixelKey::default();
-    let point = ShadedPoint { position: vec3(&case["point"]), geometric_normal: normal, normal, key };
-    let mut out = [Gathered::default()];
-    gather(&Shapes::new(&case["geometry"]), &params, &[point], &mut GatherScratch::default(), &mut out);
-    out[0]
+    gather_at(case, samples, |params| {
+        (params.thin, params.thin_edge, params.near_radiance) = (thin, thin_edge, near)
+    })
 }
 
 fn given(case: &Value) -> SampleSets {

@@ -3,7 +3,11 @@
 #![allow(dead_code, unreachable_pub, reason = "shared by tests that each use a part of it")]
 
 use ambray_core::{
+    gather::{GatherParams, GatherScratch, Gathered, ShadedPoint, gather},
+    offset::RayOffset,
     openness::Openness,
+    sampling::{PixelKey, SampleSets},
+    settings::{NearRadiance, RadianceSource, Thin},
     trace::{Diffuse, Hit, Ray, Trace, World},
 };
 use glam::{DVec3, Vec3};
@@ -47,6 +51,32 @@ pub fn measure(value: &Value) -> (Openness, f32) {
         other => panic!("unknown measure {other}"),
     };
     (openness, value.get("R").map_or(1.0, |r| number(r) as f32))
+}
+
+/// Gathers at the point of a golden case, with the radiance of its shapes as it is given, thin detection off, and
+/// what `change` makes of that.
+pub fn gather_at(case: &Value, samples: &SampleSets, change: impl Fn(&mut GatherParams<'_>)) -> Gathered {
+    let (openness, radius) = measure(&case["mu"]);
+    let mut params = GatherParams {
+        openness,
+        radius,
+        near_radiance: NearRadiance::Averaged,
+        near_limit: openness.reach(),
+        source: RadianceSource::Albedo,
+        thin: Thin::Off,
+        thin_edge: false,
+        ambient: Vec3::ONE,
+        lights: &[],
+        offset: RayOffset::UNIT,
+        samples,
+    };
+    change(&mut params);
+    let normal = vec3(&case["normal"]);
+    let key = PixelKey::default();
+    let point = ShadedPoint { position: vec3(&case["point"]), geometric_normal: normal, normal, key };
+    let mut out = [Gathered::default()];
+    gather(&Shapes::new(&case["geometry"]), &params, &[point], &mut GatherScratch::default(), &mut out);
+    out[0]
 }
 
 enum Shape {
