@@ -64,7 +64,8 @@ fn main() {
             if isa == Isa::Portable && (width == Width::Sixteen || packets) {
                 continue; // slow, and no faster than this
             }
-            contenders.push(BuildOptions { quality, width: Some(width), isa: Some(isa), packets });
+            let (width, isa) = (Some(width), Some(isa));
+            contenders.push(BuildOptions { quality, width, isa, packets, ..BuildOptions::default() });
         }
     }
     let tracers: Vec<_> = contenders.iter().map(|&options| Tracer::build(&scene, Opaque, options)).collect();

@@ -2,7 +2,8 @@
 
 use crate::Isa;
 
-/// How a [`Tracer`](crate::Tracer) is built. No choice changes any result, only build time and speed.
+/// How a [`Tracer`](crate::Tracer) is built. No choice but [`bake_budget`](Self::bake_budget) changes any result, only build
+/// time and speed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BuildOptions {
     /// Effort spent on the tree.
@@ -13,9 +14,20 @@ pub struct BuildOptions {
     pub width: Option<Width>,
     /// Whether rays of a batch are traced in packets of 16 where they share directions. Default true.
     pub packets: bool,
+    /// Triangles that baked copies of meshes with several instances may have, all together. Default
+    /// [`Self::BAKE_BUDGET`]; 0 bakes no such mesh, [`u64::MAX`] all.
+    ///
+    /// A baked instance has triangles of its own in world space, in the one tree of all baked triangles, where rays go in
+    /// packets and need no transform. A shared mesh has its triangles once, in object space, where each ray goes
+    /// alone. Meshes with the fewest triangles over all their instances are baked first. Hits on an instance agree
+    /// both ways up to the rounding of its transform.
+    pub bake_budget: u64,
 }
 
 impl BuildOptions {
+    /// Default of [`Self::bake_budget`]: at most about 250 MB of trees and a few seconds of building.
+    pub const BAKE_BUDGET: u64 = 2_000_000;
+
     /// For geometry that lives for a frame or two: builds several times faster than [`Self::best_trace`].
     #[must_use]
     pub const fn fast_build() -> Self {
@@ -35,7 +47,7 @@ impl BuildOptions {
     }
 
     const fn with_quality(quality: Quality) -> Self {
-        Self { quality, isa: None, width: None, packets: true }
+        Self { quality, isa: None, width: None, packets: true, bake_budget: Self::BAKE_BUDGET }
     }
 }
 

@@ -11,6 +11,8 @@ pub struct Stats {
     pub triangles: usize,
     /// Triangles that no ray can hit: of zero area, not finite, or beyond 10¹² units.
     pub dropped: usize,
+    /// Instances of meshes with several instances that were baked.
+    pub baked_instances: usize,
     /// Instances that share a tree with others.
     pub shared_instances: usize,
     /// Inner nodes.

@@ -15,10 +15,11 @@ use crate::{AlphaTest, BuildOptions, Isa, Opaque, Stats, Width};
 ///
 /// Two levels: meshes with a single instance are baked to world space and merged into one tree. Their rays need no transform,
 /// and one tree over all of a scene is better than a tree of overlapping trees (Sponza has 103 primitives in one
-/// place). Meshes with more instances have one tree each in object space; a tree over their instances leads there.
+/// place). Meshes with more instances are baked too if [`BuildOptions::bake_budget`] allows; else they have one tree each
+/// in object space, and a tree over their instances leads there.
 ///
 /// A batch is traced by the thread that calls; let several threads trace batches of their own. Results are bit-identical for
-/// all [`BuildOptions`].
+/// all [`BuildOptions`] that bake the same meshes.
 #[derive(Debug)]
 pub struct Tracer<A = Opaque> {
     core: Core,
@@ -88,7 +89,7 @@ impl Core {
             Isa::Avx512 => Width::Sixteen,
             _ => Width::Eight,
         });
-        let parts = Parts::of(scene, alpha);
+        let parts = Parts::of(scene, alpha, options.bake_budget);
         let (trees, mut stats) = match width {
             Width::Eight => {
                 let (levels, stats) = Levels::build(&parts, options);
@@ -146,19 +147,42 @@ struct Parts {
     meshes: Vec<Vec<Triangle>>,
     instances: Vec<(u32, u32, Affine3A)>,
     dropped: usize,
+    baked_instances: usize,
+}
+
+/// Whether each mesh is shared by its instances, and how many instances each has.
+fn shared_meshes(scene: &Scene, bake_budget: u64) -> (Vec<bool>, Vec<u64>) {
+    let mut uses = vec![0_u64; scene.meshes.len()];
+    for instance in &scene.instances {
+        uses[instance.mesh as usize] += 1;
+    }
+    let cost = |mesh: usize| uses[mesh].saturating_mul(scene.meshes[mesh].triangles.len() as u64);
+    let mut candidates: Vec<_> = (0..uses.len()).filter(|&mesh| uses[mesh] > 1).collect();
+    candidates.sort_by_key(|&mesh| (cost(mesh), mesh));
+    let mut shared = vec![false; uses.len()];
+    let mut spent = 0_u64;
+    for mesh in candidates {
+        spent = spent.saturating_add(cost(mesh));
+        shared[mesh] = spent > bake_budget;
+    }
+    (shared, uses)
 }
 
 impl Parts {
-    fn of(scene: &Scene, alpha: &dyn AlphaTest) -> Self {
-        let mut uses = vec![0_u32; scene.meshes.len()];
-        for instance in &scene.instances {
-            uses[instance.mesh as usize] += 1;
-        }
-        let mut parts = Self { baked: Vec::new(), meshes: Vec::new(), instances: Vec::new(), dropped: 0 };
+    fn of(scene: &Scene, alpha: &dyn AlphaTest, bake_budget: u64) -> Self {
+        let (is_shared, uses) = shared_meshes(scene, bake_budget);
+        let mut parts = Self {
+            baked: Vec::new(),
+            meshes: Vec::new(),
+            instances: Vec::new(),
+            dropped: 0,
+            baked_instances: 0,
+        };
         let mut shared = vec![None; scene.meshes.len()];
         for (index, instance) in (0_u32..).zip(&scene.instances) {
             let mesh = instance.mesh as usize;
-            if uses[mesh] == 1 {
+            if !is_shared[mesh] {
+                parts.baked_instances += usize::from(uses[mesh] > 1);
                 let baked = parts.triangles(scene, instance.mesh, index, &instance.world_from_object, alpha);
                 parts.baked.extend(baked);
             } else {
@@ -220,6 +244,7 @@ impl<const W: usize> Levels<W> {
         let stats = Stats {
             triangles: trees().flat_map(|t| &t.blocks).map(|b| b.count as usize).sum(),
             dropped: parts.dropped,
+            baked_instances: parts.baked_instances,
             shared_instances: shared.instances.len(),
             nodes: trees().map(|t| t.nodes.len()).sum::<usize>() + shared.nodes.len(),
             leaf_blocks: trees().map(|t| t.blocks.len()).sum(),

@@ -15,7 +15,8 @@ fn all_options() -> Vec<BuildOptions> {
         for isa in Isa::ALL.into_iter().filter(|isa| isa.is_available()) {
             for width in Width::ALL {
                 for packets in [false, true] {
-                    all.push(BuildOptions { quality, isa: Some(isa), width: Some(width), packets });
+                    let (isa, width, bake_budget) = (Some(isa), Some(width), 0);
+                    all.push(BuildOptions { quality, isa, width, packets, bake_budget });
                 }
             }
         }
@@ -245,4 +246,54 @@ fn same_t_in_any_order_of_triangles() {
         triangles.swap(i, random.below(i as u32 + 1) as usize);
     }
     assert_eq!(before, trace(&triangles));
+}
+
+/// Baked instances are hit exactly as if each had a mesh of its own.
+#[test]
+fn baked_instances() {
+    let mut random = Random(6);
+    let triangles = random_triangles(&mut random, 40);
+    let rays = random_rays(&mut random, &triangles, 1024);
+    let mut shared = scene(vec![soup(&triangles[..15]), soup(&triangles[15..])]);
+    for i in 0..30 {
+        let rotation = Mat3::from_quat(Quat::from_scaled_axis(random.cube() * 3.0));
+        let world_from_object = Affine3A::from_mat3_translation(rotation, random.cube());
+        shared.instances.push(Instance { mesh: i % 2, world_from_object });
+    }
+    let mut own = shared.clone();
+    own.meshes = shared.instances.iter().map(|i| shared.meshes[i.mesh as usize].clone()).collect();
+    for (mesh, instance) in (0..).zip(&mut own.instances) {
+        instance.mesh = mesh;
+    }
+    let reference = BruteForce::new(&own, &Opaque);
+    let mut expected = vec![Hit::MISS; rays.len()];
+    reference.closest_hits(&rays, &mut expected);
+    for (bake_budget, baked) in [(BuildOptions::BAKE_BUDGET, 32), (u64::MAX, 32), (0, 0)] {
+        let options = BuildOptions { bake_budget, ..BuildOptions::default() };
+        let tracer = Tracer::build(&shared, Opaque, options);
+        assert_eq!(tracer.stats().baked_instances, baked);
+        assert_eq!(tracer.stats().shared_instances, 32 - baked);
+        let mut hits = vec![Hit::MISS; rays.len()];
+        tracer.closest_hits(&rays, &mut hits);
+        if baked > 0 {
+            assert_eq!(hits, expected);
+        }
+    }
+}
+
+/// Baking stops at its budget, the dearest meshes stay shared.
+#[test]
+fn baking_keeps_to_its_budget() {
+    let mut random = Random(7);
+    let triangles = random_triangles(&mut random, 5000);
+    let mut scene = scene(vec![soup(&triangles[..1]), soup(&triangles)]);
+    let copies = BuildOptions::BAKE_BUDGET / 5000;
+    for i in 0..copies as u32 {
+        let world_from_object = Affine3A::from_translation(Vec3::X * i as f32);
+        scene.instances.push(Instance { mesh: 1, world_from_object });
+    }
+    scene.instances.push(scene.instances[0]);
+    let tracer = Tracer::build(&scene, Opaque, BuildOptions::default());
+    assert_eq!(tracer.stats().baked_instances, 2);
+    assert_eq!(tracer.stats().shared_instances, copies as usize + 1);
 }

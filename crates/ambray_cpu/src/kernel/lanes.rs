@@ -20,6 +20,12 @@ pub(crate) trait Lanes<const W: usize>: Copy {
     fn le(self, other: Self) -> u32;
     /// Lanes where `self < other`; false for NaN.
     fn lt(self, other: Self) -> u32;
+    /// `a` in the lanes of `mask`, `b` elsewhere.
+    fn select(mask: u32, a: Self, b: Self) -> Self;
+    /// Smallest lane, where none is NaN.
+    fn smallest(self) -> f32;
+    /// Largest lane, where none is NaN.
+    fn largest(self) -> f32;
 }
 
 /// Plain arrays: any machine, vectorised by the compiler as far as it can.
@@ -91,5 +97,17 @@ impl<const W: usize> Lanes<W> for Array<W> {
     #[inline(always)]
     fn lt(self, other: Self) -> u32 {
         self.compare(other, |a, b| a < b)
+    }
+    #[inline(always)]
+    fn select(mask: u32, a: Self, b: Self) -> Self {
+        Self(std::array::from_fn(|i| if mask >> i & 1 != 0 { a.0[i] } else { b.0[i] }))
+    }
+    #[inline(always)]
+    fn smallest(self) -> f32 {
+        self.0.into_iter().fold(f32::INFINITY, f32::min)
+    }
+    #[inline(always)]
+    fn largest(self) -> f32 {
+        self.0.into_iter().fold(f32::NEG_INFINITY, f32::max)
     }
 }

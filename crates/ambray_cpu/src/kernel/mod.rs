@@ -1,5 +1,6 @@
 //! Tracing kernels: written once, compiled for each instruction set.
 
+mod bundle;
 pub(crate) mod lanes;
 mod packet;
 mod ray;
@@ -15,6 +16,7 @@ use ambray_core::trace::{Hit, Ray};
 
 use crate::bvh::layout::{Blas, Tlas};
 use crate::{AlphaTest, Isa};
+use bundle::Bundle;
 use lanes::{Array, Lanes};
 
 /// What is asked about a ray.
@@ -145,7 +147,12 @@ fn generic<const W: usize, L: Lanes<W>, R: Lanes<16>, Q: Query>(
         return;
     }
     let mut scratch = packet::Scratch { packet: vec![MaybeUninit::uninit(); scene.stack], single };
-    for (rays, answers) in rays.chunks(packet::LANES).zip(answers.chunks_mut(packet::LANES)) {
-        packet::trace::<W, L, R, Q>(scene, rays, answers, &mut scratch);
+    let (mut rays, mut answers) = (rays, answers);
+    while !rays.is_empty() {
+        let (bundle, count) = Bundle::next::<R>(rays);
+        let (now, later) = rays.split_at(count);
+        let (first, rest) = answers.split_at_mut(count);
+        packet::trace::<W, L, R, Q>(scene, &bundle, now, first, &mut scratch);
+        (rays, answers) = (later, rest);
     }
 }

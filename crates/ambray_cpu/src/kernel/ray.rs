@@ -4,7 +4,17 @@ use glam::{Affine3A, Vec3};
 
 /// Reciprocals of direction components stay below this, so that 0 · reciprocal is 0 and never NaN. A ray that is
 /// this steep moves less than 2⁻¹⁰⁰ units along the axis a unit of t.
-const LARGEST_RECIPROCAL: f32 = 1.267_650_6e30;
+pub(crate) const LARGEST_RECIPROCAL: f32 = 1.267_650_6e30;
+
+/// Axes permuted so that the last is x, y or z.
+pub(crate) const AXES: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
+
+/// For each axis which of a node's planes a ray meets first and last, if it points `down` the axis or not.
+#[inline(always)]
+pub(crate) fn planes(down: [bool; 3]) -> ([usize; 3], [usize; 3]) {
+    let down = down.map(usize::from);
+    ([3 * down[0], 1 + 3 * down[1], 2 + 3 * down[2]], [3 - 3 * down[0], 4 - 3 * down[1], 5 - 3 * down[2]])
+}
 
 /// Ray prepared for the slab test and the triangle test, in the space of one tree.
 #[derive(Clone, Copy, Debug)]
@@ -37,19 +47,19 @@ impl Prepared {
         } else {
             2
         };
-        let axes = [[1, 2, 0], [2, 0, 1], [0, 1, 2]][z];
+        let axes = AXES[z];
         let reciprocal = d.map(|d| {
             let r = 1.0 / d;
             if r.abs() <= LARGEST_RECIPROCAL { r } else { LARGEST_RECIPROCAL.copysign(d) }
         });
-        let negative = reciprocal.map(|r| usize::from(r < 0.0));
+        let (near, far) = planes(reciprocal.map(|r| r < 0.0));
         Some(Self {
             origin: origin.to_array(),
             reciprocal,
             axes,
             shear: [d[axes[0]] / d[axes[2]], d[axes[1]] / d[axes[2]], 1.0 / d[axes[2]]],
-            near: [3 * negative[0], 1 + 3 * negative[1], 2 + 3 * negative[2]],
-            far: [3 - 3 * negative[0], 4 - 3 * negative[1], 5 - 3 * negative[2]],
+            near,
+            far,
         })
     }
 

@@ -77,6 +77,34 @@ impl Lanes<8> for Avx2x8 {
         // SAFETY: AVX2 is enabled, see the module.
         unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0)).cast_unsigned() }
     }
+    #[inline(always)]
+    fn select(mask: u32, a: Self, b: Self) -> Self {
+        // SAFETY: AVX2 is enabled, see the module.
+        unsafe {
+            let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+            let chosen =
+                _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(mask.cast_signed()), bits), bits);
+            Self(_mm256_blendv_ps(b.0, a.0, _mm256_castsi256_ps(chosen)))
+        }
+    }
+    #[inline(always)]
+    fn smallest(self) -> f32 {
+        // SAFETY: AVX2 is enabled, see the module.
+        unsafe {
+            let x = _mm_min_ps(_mm256_castps256_ps128(self.0), _mm256_extractf128_ps::<1>(self.0));
+            let x = _mm_min_ps(x, _mm_movehl_ps(x, x));
+            _mm_cvtss_f32(_mm_min_ss(x, _mm_movehdup_ps(x)))
+        }
+    }
+    #[inline(always)]
+    fn largest(self) -> f32 {
+        // SAFETY: AVX2 is enabled, see the module.
+        unsafe {
+            let x = _mm_max_ps(_mm256_castps256_ps128(self.0), _mm256_extractf128_ps::<1>(self.0));
+            let x = _mm_max_ps(x, _mm_movehl_ps(x, x));
+            _mm_cvtss_f32(_mm_max_ss(x, _mm_movehdup_ps(x)))
+        }
+    }
 }
 
 impl Lanes<16> for Avx2x16 {
@@ -128,6 +156,18 @@ impl Lanes<16> for Avx2x16 {
     #[inline(always)]
     fn lt(self, other: Self) -> u32 {
         self.0.lt(other.0) | self.1.lt(other.1) << 8
+    }
+    #[inline(always)]
+    fn select(mask: u32, a: Self, b: Self) -> Self {
+        Self(Avx2x8::select(mask, a.0, b.0), Avx2x8::select(mask >> 8, a.1, b.1))
+    }
+    #[inline(always)]
+    fn smallest(self) -> f32 {
+        self.0.min(self.1).smallest()
+    }
+    #[inline(always)]
+    fn largest(self) -> f32 {
+        self.0.max(self.1).largest()
     }
 }
 
@@ -188,5 +228,20 @@ impl Lanes<16> for Avx512x16 {
     fn lt(self, other: Self) -> u32 {
         // SAFETY: AVX-512 is enabled, see the module.
         u32::from(unsafe { _mm512_cmp_ps_mask::<_CMP_LT_OQ>(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn select(mask: u32, a: Self, b: Self) -> Self {
+        // SAFETY: AVX-512 is enabled, see the module.
+        Self(unsafe { _mm512_mask_blend_ps(mask as __mmask16, b.0, a.0) })
+    }
+    #[inline(always)]
+    fn smallest(self) -> f32 {
+        // SAFETY: AVX-512 is enabled, see the module.
+        unsafe { _mm512_reduce_min_ps(self.0) }
+    }
+    #[inline(always)]
+    fn largest(self) -> f32 {
+        // SAFETY: AVX-512 is enabled, see the module.
+        unsafe { _mm512_reduce_max_ps(self.0) }
     }
 }

@@ -1,0 +1,185 @@
+//! From rays in the order of the caller to packets of rays that agree in direction.
+
+use ambray_core::trace::Ray;
+
+use super::lanes::Lanes;
+use super::ray::{self, Prepared};
+
+/// Rays of a packet.
+pub(crate) const LANES: usize = 16;
+
+/// Neighbours in the batch whose directions have a smaller dot product belong to different runs.
+const SAME_RUN: f32 = 0.7;
+
+/// Sixteen numbers, one a ray.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+pub(crate) struct Numbers(pub(crate) [f32; LANES]);
+
+impl Numbers {
+    const ZERO: Self = Self([0.0; LANES]);
+
+    #[inline(always)]
+    pub(crate) fn load<R: Lanes<16>>(&self) -> R {
+        R::load(&self.0)
+    }
+}
+
+/// Up to sixteen rays as structure of arrays.
+pub(crate) struct Bundle {
+    origin: [Numbers; 3],
+    direction: [Numbers; 3],
+    pub(crate) t_max: Numbers,
+    /// Lanes of rays that can hit anything.
+    pub(crate) able: u32,
+    /// For each axis the lanes whose reciprocals are negative.
+    down: [u32; 3],
+    /// Lanes whose direction is longest along x, and those where it is along y.
+    longest: [u32; 2],
+}
+
+impl Bundle {
+    /// Takes the next rays of a batch, at least one and no more than sixteen; also returns how many.
+    ///
+    /// The caller delivers runs of parallel rays, of no fixed length. A bundle ends with a run if it can do so in its second
+    /// half, so that the next run is not torn.
+    #[inline(always)]
+    pub(crate) fn next<R: Lanes<16>>(rays: &[Ray]) -> (Self, usize) {
+        let mut bundle = Self {
+            origin: [Numbers::ZERO; 3],
+            direction: [Numbers::ZERO; 3],
+            t_max: Numbers::ZERO,
+            able: 0,
+            down: [0; 3],
+            longest: [0; 2],
+        };
+        let mut turns = 0_u32;
+        let mut last = rays.first().map_or(glam::Vec3::ZERO, |ray| ray.direction);
+        for (lane, ray) in rays.iter().take(LANES).enumerate() {
+            for axis in 0..3 {
+                bundle.origin[axis].0[lane] = ray.origin[axis];
+                bundle.direction[axis].0[lane] = ray.direction[axis];
+            }
+            bundle.t_max.0[lane] = ray.t_max;
+            turns |= u32::from(last.dot(ray.direction) < SAME_RUN) << lane;
+            last = ray.direction;
+        }
+        turns |= u32::from(rays.get(LANES).is_some_and(|ray| last.dot(ray.direction) < SAME_RUN)) << LANES;
+        let count = match turns >> (LANES / 2) {
+            0 => rays.len().min(LANES),
+            late => LANES / 2 + late.ilog2() as usize,
+        };
+        bundle.classify::<R>();
+        bundle.able &= (1 << count) - 1;
+        (bundle, count)
+    }
+
+    #[inline(always)]
+    fn classify<R: Lanes<16>>(&mut self) {
+        let zero = R::splat(0.0);
+        let (largest, smallest) = (R::splat(f32::MAX), R::splat(f32::MIN));
+        let mut able = zero.lt(self.t_max.load());
+        let mut directed = 0;
+        for (axis, down) in self.down.iter_mut().enumerate() {
+            let origin: R = self.origin[axis].load();
+            let direction: R = self.direction[axis].load();
+            able &= origin.le(largest) & smallest.le(origin) & direction.le(largest) & smallest.le(direction);
+            directed |= direction.lt(zero) | zero.lt(direction);
+            *down = R::splat(1.0).div(direction).lt(zero);
+        }
+        self.able = able & directed;
+        let [x, y, z] = [0, 1, 2].map(|axis| {
+            let direction: R = self.direction[axis].load();
+            direction.max(zero.sub(direction))
+        });
+        let along_x = y.le(x) & z.le(x);
+        self.longest = [along_x, z.le(y) & !along_x];
+    }
+
+    /// Those of the rays `waiting` that agree with the first of them in the order of planes and in the longest axis.
+    #[inline(always)]
+    pub(crate) fn group(&self, waiting: u32) -> u32 {
+        let first = waiting.trailing_zeros();
+        // Lanes that differ from the first in one property.
+        let differ = |lanes: u32| if lanes >> first & 1 != 0 { !lanes } else { lanes };
+        let [x, y, z] = self.down.map(differ);
+        let [along_x, along_y] = self.longest.map(differ);
+        waiting & !(x | y | z | along_x | along_y)
+    }
+
+    /// The packet of the rays of `group`.
+    #[inline(always)]
+    pub(crate) fn packet<R: Lanes<16>>(&self, group: u32) -> Packet {
+        let first = group.trailing_zeros();
+        let is = |lanes: u32| lanes >> first & 1 != 0;
+        let longest = if is(self.longest[0]) {
+            0
+        } else if is(self.longest[1]) {
+            1
+        } else {
+            2
+        };
+        let axes = ray::AXES[longest];
+        let (near, far) = ray::planes(self.down.map(is));
+        let mut packet = Packet {
+            origin: [Numbers::ZERO; 3],
+            reciprocal: [Numbers::ZERO; 3],
+            shear: [Numbers::ZERO; 3],
+            limit: Numbers(R::select(group, self.t_max.load(), R::splat(-1.0)).to_array()),
+            origins: [[0.0; 2]; 3],
+            reciprocals: [[0.0; 2]; 3],
+            axes,
+            near,
+            far,
+        };
+        let one = R::splat(1.0);
+        let longest = ray::LARGEST_RECIPROCAL;
+        for axis in 0..3 {
+            let lane = first as usize % LANES;
+            let origin = R::select(group, self.origin[axis].load(), R::splat(self.origin[axis].0[lane]));
+            packet.origin[axis] = Numbers(origin.to_array());
+            packet.origins[axis] = [origin.smallest(), origin.largest()];
+            let direction =
+                R::select(group, self.direction[axis].load(), R::splat(self.direction[axis].0[lane]));
+            let reciprocal = one.div(direction).min(R::splat(longest)).max(R::splat(-longest));
+            packet.reciprocal[axis] = Numbers(reciprocal.to_array());
+            packet.reciprocals[axis] = [reciprocal.smallest(), reciprocal.largest()];
+        }
+        let [x, y, z] = axes.map(|axis| self.direction[axis].load::<R>());
+        packet.shear = [x.div(z), y.div(z), one.div(z)].map(|shear| Numbers(shear.to_array()));
+        packet
+    }
+}
+
+/// Rays that agree in the order of planes and in the longest axis.
+pub(crate) struct Packet {
+    pub(crate) origin: [Numbers; 3],
+    pub(crate) reciprocal: [Numbers; 3],
+    pub(crate) shear: [Numbers; 3],
+    /// t of the best hits so far, or ends of the rays; negative for rays that are answered or absent.
+    pub(crate) limit: Numbers,
+    /// Smallest and largest of the rays.
+    pub(crate) origins: [[f32; 2]; 3],
+    pub(crate) reciprocals: [[f32; 2]; 3],
+    /// As in [`Prepared`].
+    pub(crate) axes: [usize; 3],
+    pub(crate) near: [usize; 3],
+    pub(crate) far: [usize; 3],
+}
+
+impl Packet {
+    /// One of the rays, bit for bit what [`Prepared::new`] makes of it.
+    #[inline(always)]
+    pub(crate) fn ray(&self, lane: usize) -> Prepared {
+        let lane = lane % LANES;
+        let of = |numbers: &[Numbers; 3]| [numbers[0].0[lane], numbers[1].0[lane], numbers[2].0[lane]];
+        Prepared {
+            origin: of(&self.origin),
+            reciprocal: of(&self.reciprocal),
+            axes: self.axes,
+            shear: of(&self.shear),
+            near: self.near,
+            far: self.far,
+        }
+    }
+}
