@@ -1,10 +1,10 @@
 //! The command line as it was typed: parsed and checked for form, without side effects.
 
-use std::{any::TypeId, ffi::OsString, path::PathBuf, str::FromStr};
+use std::{any::TypeId, ffi::OsString, fmt::Display, path::PathBuf, str::FromStr};
 
 use ambray::{
     Aov,
-    settings::{Preset, Settings, SettingsPatch},
+    settings::{Auto, Preset, Rgb, Settings, SettingsPatch, Size, Triple},
 };
 use clap::{
     Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum,
@@ -95,7 +95,7 @@ pub struct SettingsArgs {
     /// Starting point for quality and speed; a settings file and flags have the last word [default: realtime]
     #[arg(long, value_enum, value_name = "PRESET", help_heading = "Settings")]
     pub preset: Option<Preset>,
-    /// Read settings from a TOML file, or from a PNG picture that ambray wrote
+    /// Read settings from a TOML file, or from a picture that ambray wrote
     #[arg(long, value_name = "FILE", help_heading = "Settings")]
     pub settings: Option<PathBuf>,
     /// Write all settings in use to a TOML file, from which --settings makes the same picture again
@@ -110,7 +110,7 @@ pub struct SettingsArgs {
 #[derive(Clone, Copy, Debug, Args)]
 pub struct RunArgs {
     /// Number of threads, 0 for all cores; the result does not depend on it
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = |text: &str| whole::<u16>(text, 0, 1024))]
     pub threads: u16,
     /// No progress bar and no report; warnings and errors are still shown on stderr
     #[arg(short, long)]
@@ -156,7 +156,7 @@ pub struct QueryArgs {
     /// Format of the points [default: JSON lines if the first character is {, else CSV]
     #[arg(long, value_enum, value_name = "FORMAT")]
     pub points_format: Option<PointsFormat>,
-    /// File for the results; - is stdout [default: -]
+    /// File for the results; - is stdout, where they appear as they come [default: -]
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
     /// Results as JSON lines instead of CSV
@@ -180,13 +180,13 @@ pub struct BenchArgs {
     #[arg(long, value_name = "NAME_OR_INDEX")]
     pub gltf_scene: Option<String>,
     /// Frames to measure per scene, at least
-    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = |text: &str| whole::<u32>(text, 1, 1_000_000))]
     pub frames: u32,
     /// Seconds to measure per scene, at least: frames go on until both --frames and --seconds are reached
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0, value_parser = seconds)]
     pub seconds: f64,
     /// Frames to render before, which do not count
-    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = |text: &str| whole::<u32>(text, 0, 1_000_000))]
     pub warmup: u32,
     /// Print the result as one JSON object on stdout
     #[arg(long)]
@@ -289,9 +289,14 @@ fn planes() -> impl TypedValueParser<Value = Planes> {
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
-    let expected = "expected seconds from 0 to 86400";
+    let expected = "seconds from 0 to 86400";
     let seconds: f64 = text.parse().map_err(|_| expected)?;
     if (0.0..=86_400.0).contains(&seconds) { Ok(seconds) } else { Err(expected.to_owned()) }
+}
+
+fn whole<T: FromStr + PartialOrd + Display>(text: &str, least: T, most: T) -> Result<T, String> {
+    let number = text.parse().ok().filter(|number| (&least..=&most).contains(&number));
+    number.ok_or_else(|| format!("a whole number, {least} to {most}"))
 }
 
 /// The command line as clap knows it, with the default of each setting in its help.
@@ -309,7 +314,8 @@ pub fn command() -> clap::Command {
 fn lenient(arg: clap::Arg) -> clap::Arg {
     let has_value =
         arg.get_long().is_some() && arg.get_action().takes_values() && !arg.is_require_equals_set();
-    let is_list = arg.get_value_names().is_some_and(|names| names.iter().any(|name| name.contains(',')));
+    let is_list =
+        arg.get_value_names().is_some_and(|names| names.iter().any(|name| name.contains([',', 'x'])));
     arg.allow_negative_numbers(has_value && !is_list).allow_hyphen_values(has_value && is_list)
 }
 
@@ -320,14 +326,37 @@ fn describe_setting(arg: clap::Arg, defaults: &toml::Table) -> clap::Arg {
     let arg = arg.help(format!("{help} [default: {}]", spelled(default)));
     let value = arg.get_value_parser().type_id();
     if value == TypeId::of::<u32>() {
-        arg.value_parser(|text: &str| {
-            text.parse::<u32>().map_err(|_| "expected a whole number, 0 to 4294967295")
-        })
+        let (least, most) = if arg.get_long() == Some("spp") { (1, 65536) } else { (0, u32::MAX) };
+        // Numbers out of range pass here: the check of all settings tells them together.
+        arg.value_parser(move |text: &str| whole(text, 0, u32::MAX).or_else(|_| whole(text, least, most)))
     } else if value == TypeId::of::<f32>() {
-        arg.value_parser(|text: &str| text.parse::<f32>().map_err(|_| "expected a number"))
+        arg.value_parser(|text: &str| text.parse::<f32>().map_err(|_| "a number"))
+    } else if value == TypeId::of::<Auto<f32>>() {
+        arg.value_parser(|text: &str| text.parse::<Auto<f32>>().map_err(|_| "auto or a number"))
+    } else if value == TypeId::of::<Size>() {
+        arg.value_parser(|text: &str| text.parse::<Size>().map_err(|error| what(&error)))
+    } else if value == TypeId::of::<Rgb>() {
+        arg.value_parser(|text: &str| text.parse::<Rgb>().map_err(|error| what(&error)))
+    } else if value == TypeId::of::<Auto<Rgb>>() {
+        arg.value_parser(auto::<Rgb>)
+    } else if value == TypeId::of::<Auto<Triple>>() {
+        arg.value_parser(auto::<Triple>)
     } else {
         arg
     }
+}
+
+fn auto<T: FromStr<Err: Display>>(text: &str) -> Result<Auto<T>, String> {
+    if text == "auto" {
+        return Ok(Auto::Auto);
+    }
+    text.parse().map(Auto::Value).map_err(|error| format!("auto or {}", what(&error)))
+}
+
+/// What is allowed, without the word "expected" that the errors of values begin with.
+fn what(error: &impl Display) -> String {
+    let text = error.to_string();
+    text.strip_prefix("expected ").unwrap_or(&text).to_owned()
 }
 
 /// A value of a settings file as it is spelled on the command line.

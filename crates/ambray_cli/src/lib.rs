@@ -16,6 +16,7 @@ pub mod scene_source;
 pub mod settings_file;
 pub mod signals;
 pub mod terminal;
+pub mod usage;
 
 use std::{ffi::OsString, process::ExitCode};
 
@@ -32,12 +33,10 @@ where
     let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
     let outcome = match args::parse_from(&arguments) {
         Ok(command) => signals::install().and_then(|()| dispatch(&command)),
-        Err(error) => {
-            let _ = error.print(); // a closed terminal is no reason to fail
-            if let (true, Some(hint)) = (error.use_stderr(), args::hint(&arguments)) {
-                terminal::say(&format!("  hint: {hint}"));
-            }
-            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(failure::EXIT_ERROR));
+        Err(error) if error.use_stderr() => Err(usage::explain(&error, &arguments)),
+        Err(help) => {
+            let _ = help.print(); // a closed terminal is no reason to fail
+            return ExitCode::SUCCESS;
         }
     };
     match outcome {

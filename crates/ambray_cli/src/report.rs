@@ -35,9 +35,33 @@ pub fn grouped(count: u64) -> String {
 pub fn bytes(count: u64) -> String {
     match count {
         0..10_000 => format!("{count} B"),
-        10_000..10_000_000 => format!("{:.1} kB", count as f64 * 1e-3),
-        _ => format!("{:.1} MB", count as f64 * 1e-6),
+        10_000..1_000_000 => format!("{:.1} kB", count as f64 * 1e-3),
+        1_000_000..1_000_000_000 => format!("{:.1} MB", count as f64 * 1e-6),
+        _ => format!("{:.1} GB", count as f64 * 1e-9),
     }
+}
+
+/// A length to five significant digits; the JSON report has all of them.
+#[must_use]
+pub fn length(value: f32) -> String {
+    format!("{value:.4e}").parse::<f32>().unwrap_or(value).to_string()
+}
+
+/// Rays a second, in millions where there are many.
+#[must_use]
+pub fn rate(rays: u64, time: Duration) -> String {
+    let rate = rays as f64 / time.as_secs_f64().max(1e-9);
+    if rate < 1e5 {
+        format!("{} rays", grouped(rate as u64))
+    } else {
+        format!("{:.1} million rays", rate * 1e-6)
+    }
+}
+
+/// A count and what is counted, in the singular or the plural.
+#[must_use]
+pub fn counted(count: u64, thing: &str) -> String {
+    format!("{} {thing}{}", grouped(count), if count == 1 { "" } else { "s" })
 }
 
 /// The scene in numbers.
@@ -294,8 +318,12 @@ impl RenderReport {
         let _ = writeln!(text, "view     {}", camera_line(&view.camera)); // writing to a string cannot fail
         let _ = writeln!(
             text,
-            "frame    {}x{}, {} rays/pixel, radius {}, {} threads",
-            self.width, self.height, self.spp, view.radius, self.threads
+            "frame    {}x{}, {} rays/pixel, radius {}, {}",
+            self.width,
+            self.height,
+            self.spp,
+            length(view.radius),
+            counted(self.threads as u64, "thread")
         );
         let _ = writeln!(text, "time     {}", times_line(times));
         let _ = writeln!(text, "rays     {}", rays_line(rays));
@@ -308,10 +336,10 @@ impl RenderReport {
 #[must_use]
 pub fn scene_line(scene: &SceneReport, build: &BuildReport) -> String {
     format!(
-        "scene    {}: {} triangles, {} instances; loaded in {:.0} ms, built in {:.0} ms, {}\n",
+        "scene    {}: {}, {}; loaded in {:.0} ms, built in {:.0} ms, {}\n",
         scene.source,
-        grouped(scene.triangles),
-        grouped(scene.instances),
+        counted(scene.triangles, "triangle"),
+        counted(scene.instances, "instance"),
         scene.load_ms,
         build.build_ms,
         bytes(build.acceleration_bytes),
@@ -372,6 +400,11 @@ mod tests {
         assert_eq!(grouped(999), "999");
         assert_eq!(grouped(1_234_567), "1 234 567");
         assert_eq!(bytes(27_000_000), "27.0 MB");
+        assert_eq!([192_700, 4_473_300, 1_500_000_000].map(bytes), ["192.7 kB", "4.5 MB", "1.5 GB"]);
+        assert_eq!([54.880_005, 0.036_658_335, 1.0, 1e7].map(length), ["54.88", "0.036658", "1", "10000000"]);
+        assert_eq!([1, 2].map(|n| counted(n, "triangle")), ["1 triangle", "2 triangles"]);
+        assert_eq!(rate(16, Duration::from_millis(5)), "3 200 rays");
+        assert_eq!(rate(4_600_000, Duration::from_secs(2)), "2.3 million rays");
         assert_eq!(triple([-0.0, 3.688, -0.815_000_06]), "0,3.688,-0.815");
         assert_eq!(milliseconds(Duration::from_nanos(1_234_567)), 1.235);
     }

@@ -23,7 +23,7 @@ pub fn say(line: &str) {
 
 /// Tells of something odd that does not stop the work.
 pub fn warn(message: &str) {
-    say(&format!("warning: {message}"));
+    say(&format!("ambray: warning: {message}"));
 }
 
 /// Shows warnings that libraries log.

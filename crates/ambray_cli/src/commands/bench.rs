@@ -10,7 +10,7 @@ use ambray::{Frame, Renderer, settings::Settings};
 use anyhow::bail;
 use serde::Serialize;
 
-use super::{control, explained};
+use super::{check_memory, control, explained};
 use crate::{
     args::BenchArgs,
     machine::Machine,
@@ -67,6 +67,7 @@ pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
         bail!("--json is not allowed with output or settings on stdout: both write there");
     }
     target.iter().chain(&saved).try_for_each(Target::check)?;
+    check_memory(settings.size, 0)?;
     if cfg!(debug_assertions) {
         terminal::warn("this is not a release build: times say little");
     }

@@ -228,7 +228,7 @@ impl SceneInfo {
             line("bounds", format!("{} to {}", triple(*low), triple(*high)));
         }
         let view = &self.default_view;
-        line("radius", format!("{} (auto)", view.radius));
+        line("radius", format!("{} (auto)", report::length(view.radius)));
         line("ambient", format!("{} (auto)", triple(view.ambient)));
         line("view", format!("{} (auto)", view.camera.origin));
 

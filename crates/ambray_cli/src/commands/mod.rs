@@ -6,13 +6,30 @@ pub mod info;
 pub mod query;
 pub mod render;
 
-use ambray::{Control, RenderError};
+use ambray::{Control, RenderError, settings::Size};
+use anyhow::bail;
 
-use crate::{args::RunArgs, failure::Problems, signals};
+use crate::{args::RunArgs, failure::Problems, machine, report, signals};
 
 /// Control of long work: Ctrl-C, threads and a progress bar.
 fn control<'a>(run: &RunArgs, progress: &'a (dyn Fn(f32) + Sync)) -> Control<'a> {
     Control { progress, cancel: signals::cancel_flag(), threads: usize::from(run.threads) }
+}
+
+/// Memory of a frame with its buffers, bytes a pixel; measured, rounded up.
+const FRAME_BYTES: u64 = 220;
+
+/// Refuses a frame that the free memory cannot hold, with `extra` bytes a pixel for the output.
+fn check_memory(size: Size, extra: u64) -> anyhow::Result<()> {
+    let needed = u64::from(size.width) * u64::from(size.height) * (FRAME_BYTES + extra);
+    match machine::free_memory() {
+        Some(free) if needed > free => bail!(
+            "--size {size} is not allowed here: it needs about {} of memory, and {} are free",
+            report::bytes(needed),
+            report::bytes(free)
+        ),
+        _ => Ok(()),
+    }
 }
 
 /// The renderer's errors in the terms of the program.
@@ -22,6 +39,8 @@ fn explained(error: RenderError) -> anyhow::Error {
         RenderError::Settings(problems) => {
             Problems(problems.iter().map(|p| format!("--{p}")).collect()).into()
         }
+        // The messages begin with the name of the setting.
+        RenderError::UnknownCamera { .. } | RenderError::Camera(_) => anyhow::anyhow!("--{error}"),
         other => other.into(),
     }
 }

@@ -16,7 +16,7 @@ use crate::{
     output::atomic::{Batch, Target},
     points::{self, Reader},
     progress::Progress,
-    report::grouped,
+    report::{counted, rate},
     scene_source, settings_file, terminal,
 };
 
@@ -96,11 +96,11 @@ struct Done {
 impl Job<'_> {
     fn run(&mut self, output: &mut dyn Write) -> anyhow::Result<()> {
         let progress = Progress::new("evaluating", self.args.run.quiet);
-        if !self.args.json {
-            output.write_all(points::RESULT_HEADER.as_bytes())?;
-        }
+        // The header waits for the first results: a list that is wrong from the start leaves no output.
+        let mut header = if self.args.json { "" } else { points::RESULT_HEADER };
         loop {
             let text = self.chunk()?;
+            output.write_all(std::mem::take(&mut header).as_bytes())?;
             if text.is_empty() {
                 return Ok(output.flush()?);
             }
@@ -147,13 +147,12 @@ impl Job<'_> {
 impl Done {
     /// Tells on stderr, since results may go to stdout.
     fn say(&self, target: &Target) {
-        let seconds = self.time.as_secs_f64();
-        let rate = self.rays as f64 * 1e-6 / seconds.max(1e-9);
         terminal::say(&format!(
-            "{} points, {} rays in {:.1} ms, {rate:.1} million rays a second; wrote {}",
-            grouped(self.points),
-            grouped(self.rays),
-            seconds * 1e3,
+            "{}, {} in {:.1} ms, {} a second; wrote {}",
+            counted(self.points, "point"),
+            counted(self.rays, "ray"),
+            self.time.as_secs_f64() * 1e3,
+            rate(self.rays, self.time),
             target.name()
         ));
     }

@@ -5,7 +5,7 @@ use std::time::Instant;
 use ambray::Renderer;
 use anyhow::bail;
 
-use super::{control, explained};
+use super::{check_memory, control, explained};
 use crate::{
     args::RenderArgs,
     output::{
@@ -29,6 +29,7 @@ pub fn run(args: &RenderArgs) -> anyhow::Result<()> {
         bail!("--json is not allowed with --save-settings -: both write to stdout");
     }
     check_saved(saved.as_ref(), &plan)?;
+    check_memory(settings.size, plan.bytes_per_pixel())?;
 
     let source = scene_source::open(&args.scene.scene, args.scene.gltf_scene.as_deref())?;
     let scene = SceneReport::of(&source);

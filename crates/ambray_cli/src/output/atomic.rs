@@ -68,8 +68,17 @@ fn check_file(path: &Path) -> anyhow::Result<()> {
         let missing = anyhow::anyhow!("the folder {} does not exist", folder.display());
         return Err(with_hint(missing, "create the folder first"));
     }
-    temporary_in(folder).with_context(|| format!("the folder {} is not writable", folder.display()))?;
-    Ok(())
+    match temporary_in(folder) {
+        Ok(_) => Ok(()),
+        // The name of the temporary file would say nothing to the user.
+        Err(error) => bail!("the folder {} is not writable: {}", folder.display(), reason(&error)),
+    }
+}
+
+/// The system's own words, without the path that `tempfile` adds.
+fn reason(error: &std::io::Error) -> String {
+    let text = error.to_string();
+    text.split(" at path ").next().unwrap_or(&text).to_owned()
 }
 
 fn folder_of(path: &Path) -> &Path {

@@ -40,6 +40,13 @@ impl Plan {
             _ => Path::new("ambray.png"),
         };
         let main = Target::of(output.unwrap_or(default));
+        if let Target::File(path) = &main
+            && path.is_dir()
+        {
+            let inside = path.join(default);
+            let folder = anyhow!("output {}: is a folder, not a file", path.display());
+            return Err(with_hint(folder, format!("to write into it: -o {}", inside.display())));
+        }
         let plan = Self { format: decide_format(&main, format)?, planes: distinct(planes), main };
         if plan.main == Target::Stdout && plan.format != Format::Exr && !plan.planes.is_empty() {
             return Err(with_hint(
@@ -60,6 +67,14 @@ impl Plan {
             files.extend(self.planes.iter().map(|&aov| (Target::File(plane_path(path, aov)), aov)));
         }
         files
+    }
+
+    /// Memory that writing takes at most, bytes a pixel.
+    #[must_use]
+    pub fn bytes_per_pixel(&self) -> u64 {
+        let channels: usize = self.planes.iter().map(|aov| aov.channels().len()).sum();
+        // OpenEXR holds every plane twice, as values and as channels; PNG one plane at a time, with its display values.
+        if self.format == Format::Exr { 8 * (3 + channels as u64) } else { 32 }
     }
 
     /// Writes the files of `frame` to `batch`.

@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use glam::Vec3;
-use png::{BitDepth, ColorType, Encoder, SrgbRenderingIntent};
+use png::{BitDepth, ColorType, Compression, Encoder, SrgbRenderingIntent};
 
 use super::false_colour::Picture;
 
@@ -25,6 +25,7 @@ pub fn write(
     texts: &[(&str, &str)],
 ) -> anyhow::Result<()> {
     let mut encoder = Encoder::new(output, width, height);
+    encoder.set_compression(Compression::Fast); // a tenth of the time for files a little larger
     encoder.set_depth(match bits {
         Bits::Eight => BitDepth::Eight,
         Bits::Sixteen => BitDepth::Sixteen,

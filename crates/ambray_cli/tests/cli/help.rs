@@ -75,24 +75,32 @@ fn completions_and_manual_are_printed() {
         let script = bench.run(&["completions", shell]).succeeds().text();
         assert!(script.contains("near-radiance"), "{shell}");
     }
-    bench.run(&["completions", "csh"]).fails(&["'csh'", "<SHELL>", "bash"]);
+    bench.run(&["completions", "csh"]).fails(&[" csh is not allowed", "SHELL", "bash"]);
     assert!(bench.run(&["man"]).succeeds().text().contains("ambray\\-render"));
 }
 
 #[test]
 fn wrong_usage_names_option_value_and_choices() {
     let bench = Bench::new();
-    bench.run(&["render", "--thin", "thick"]).fails(&["'thick'", "--thin", "sheet"]);
-    bench.run(&["render", "--size", "640"]).fails(&["'640'", "--size", "WIDTHxHEIGHT"]);
-    bench.run(&["render", "--spp", "many"]).fails(&["'many'", "--spp", "expected a whole number"]);
-    bench.run(&["render", "--aov", "opennes"]).fails(&["'opennes'", "--aov", "openness"]);
-    bench.run(&["render", "--format", "jpg"]).fails(&["'jpg'", "--format", "png16"]);
-    bench.run(&["render", "--threads", "-1"]).fails(&["'-1'", "--threads", "0..=1024"]);
-    bench.run(&["render", "--exposure", "bright"]).fails(&["'bright'", "--exposure", "expected a number"]);
-    bench.run(&["render", "--threads", "9999"]).fails(&["'9999'", "--threads", "0..=1024"]);
-    bench.run(&["bench", "--frames", "0"]).fails(&["'0'", "--frames"]);
+    bench.run(&["render", "--thin", "thick"]).fails(&[" thick is not allowed", "--thin", "sheet"]);
+    bench.run(&["render", "--size", "640"]).fails(&[" 640 is not allowed", "--size", "WIDTHxHEIGHT"]);
+    bench.run(&["render", "--spp", "many"]).fails(&[
+        " many is not allowed",
+        "--spp",
+        "a whole number, 1 to 65536",
+    ]);
+    bench.run(&["render", "--aov", "opennes"]).fails(&[" opennes is not allowed", "--aov", "openness"]);
+    bench.run(&["render", "--format", "jpg"]).fails(&[" jpg is not allowed", "--format", "png16"]);
+    bench.run(&["render", "--threads", "-1"]).fails(&[" -1 is not allowed", "--threads", "0 to 1024"]);
+    bench.run(&["render", "--exposure", "bright"]).fails(&[
+        " bright is not allowed",
+        "--exposure",
+        "a number",
+    ]);
+    bench.run(&["render", "--threads", "9999"]).fails(&[" 9999 is not allowed", "--threads", "0 to 1024"]);
+    bench.run(&["bench", "--frames", "0"]).fails(&[" 0 is not allowed", "--frames"]);
     bench.run(&["query"]).fails(&["--points"]);
-    bench.run(&["paint"]).fails(&["'paint'", "hint: to render a scene: ambray render paint"]);
+    bench.run(&["paint"]).fails(&["no command paint", "hint: to render a scene: ambray render paint"]);
     bench.run(&["render", "--json", "--save-settings=-"]).fails(&["--json", "--save-settings -"]);
     bench.run(&["bench", "--json", "-o-"]).fails(&["--json"]);
     assert_eq!(bench.files(), [""; 0]);

@@ -41,6 +41,9 @@ fn saved_settings_make_the_same_picture() {
         .succeeds();
     assert_eq!(bench.read("a.png"), bench.read("c.png"));
     assert_eq!(bench.read("a.toml"), bench.read("c.toml"));
+    bench.run(&["render", "scene.obj", "-o", "a.exr", "--settings=a.toml"]).succeeds();
+    bench.run(&["render", "scene.obj", "-o", "e.png", "--settings=a.exr"]).succeeds();
+    assert_eq!(bench.read("a.png"), bench.read("e.png"));
     assert_eq!(Png::of(&bench.read("a.png")).text("ambray:settings"), bench.read_text("a.toml"));
     bench.render(&["-o", "d.png"]).succeeds();
     assert_ne!(bench.read("a.png"), bench.read("d.png"), "the settings had no effect");
@@ -84,9 +87,42 @@ fn every_problem_is_told_with_option_value_and_range() {
     bench.render(&["--size=0x5"]).fails(&["--size 0x5", "1 to 32768"]);
     bench.render(&["--radius=nan"]).fails(&["--radius NaN", "finite"]);
     bench.render(&["--vertical-fov=180"]).fails(&["--vertical-fov 180", "below 180"]);
-    bench.render(&["--camera=nave"]).fails(&["nave"]);
-    bench.render(&["--camera-position=1,1,1", "--camera-target=1,1,1"]).fails(&["camera"]);
+    bench.render(&["--camera=nave"]).fails(&["ambray: error: --camera nave"]);
+    bench.render(&["--camera-position=1,1,1", "--camera-target=1,1,1"]).fails(&["error: --camera-target"]);
     assert_eq!(bench.files(), ["wrong.toml"]);
+}
+
+#[test]
+fn wrong_command_lines_are_told_in_one_line() {
+    let bench = Bench::new();
+    let check = |arguments: &[&str], expected: &str| {
+        let run = bench.run(arguments).fails(&[]);
+        assert_eq!(run.stderr, expected, "{arguments:?}");
+    };
+    check(&["render", "--spp=x"], "ambray: error: --spp x is not allowed: a whole number, 1 to 65536\n");
+    check(
+        &["render", "--sise=1x1"],
+        "ambray: error: there is no option --sise\n  hint: did you mean --size?\n",
+    );
+    check(&["query", "scene.obj"], "ambray: error: --points is missing\n");
+    check(
+        &["scene.obj"],
+        "ambray: error: there is no command scene.obj\n  hint: to render a scene: ambray render scene.obj ...\n",
+    );
+    bench.render(&["-o", "."]).fails(&["output .: is a folder", "hint: to write into it: -o ./ambray.png"]);
+    assert_eq!(bench.files(), [""; 0]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn pictures_beyond_the_memory_are_refused() {
+    let bench = Bench::new();
+    // 268 million pixels with all planes take about 150 GB.
+    if ambray_cli::machine::free_memory().is_some_and(|free| free < 100_000_000_000) {
+        let huge = ["--size=16384x16384", "--aov=all", "-o", "huge.exr"];
+        bench.render(&huge).fails(&["--size 16384x16384", " GB of memory"]);
+        assert_eq!(bench.files(), [""; 0]);
+    }
 }
 
 #[test]

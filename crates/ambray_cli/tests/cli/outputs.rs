@@ -174,7 +174,7 @@ fn outputs_that_cannot_be_are_refused_before_the_work() {
     refused(&["-o", "out.jpg"], &["out.jpg", ".png and .exr", "hint"]);
     refused(&["-o", "out"], &["out: ", ".png and .exr"]);
     refused(&["-o", ""], &["--output"]);
-    refused(&["-o", ".."], &["..: ", ".png and .exr"]);
+    refused(&["-o", ".."], &["is a folder"]);
     refused(&["-o", "out.exr", "--format=png8"], &["out.exr", "png8"]);
     refused(&["-o", "scene.obj/x.png"], &["does not exist"]);
     refused(&["--save-settings=no/s.toml"], &["no/s.toml"]);

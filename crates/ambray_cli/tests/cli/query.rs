@@ -88,3 +88,15 @@ fn no_points_give_no_results() {
     let run = bench.run(&["query", "scene.obj", "--points=-", "-q"]).succeeds();
     assert_eq!(run.text().lines().count(), 1);
 }
+
+#[test]
+fn a_list_that_is_wrong_from_the_start_leaves_no_output() {
+    let bench = Bench::new();
+    for line in ["0,0,0,0,0,0", "0,0,0,0,1", "0,nan,0,0,1,0", "0,0,0,0,1,0,16"] {
+        bench.write("points.csv", line);
+        // `fails` holds stdout to be empty.
+        bench.run(&["query", "scene.obj", "--points=points.csv"]).fails(&["ambray: error: points.csv:1: "]);
+    }
+    let run = bench.run_with_input(&["query", "scene.obj", "--points=-"], "").succeeds();
+    assert!(run.text().starts_with("x,y,z,") && run.stderr.starts_with("0 points, 0 rays"), "{run:?}");
+}
