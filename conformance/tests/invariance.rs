@@ -1,6 +1,6 @@
 //! What must not change the picture: threads, runs, motion, scale and order; and what must change it in one direction.
 
-use ambray::{Control, Frame, Renderer};
+use ambray::{BuildOptions, Control, Frame, Renderer};
 use ambray_core::settings::{Auto, Settings, Size, Thin, Triple};
 use ambray_scene::{Instance, Material, Mesh, Scene};
 use glam::{Affine3A, Mat3, Quat, Vec3};
@@ -133,4 +133,47 @@ fn more_geometry_never_opens() {
     let opened =
         (0..full.ambient.len()).filter(same_surface).filter(|&i| full.ambient[i].x > less.ambient[i].x);
     assert_eq!(opened.count(), 0);
+}
+
+/// One open quad of any size and slant, seen near the origin, is fully open: no ray hits the surface it starts on.
+#[test]
+fn slanted_floors_do_not_shadow_themselves() {
+    for half in [10.0_f32, 40.0, 1e3, 1e4] {
+        for turn in 0..6 {
+            let angle = turn as f32;
+            let rotation = Quat::from_euler(glam::EulerRot::XYZ, 0.3 + angle, 0.7 * angle, 0.2 - angle);
+            let (u, v) = (rotation * Vec3::X * half, rotation * Vec3::Z * half);
+            // Off the origin, or symmetry would hide rounding.
+            let centre = rotation * Vec3::new(0.31, 0.0, -0.17) * half;
+            let positions = vec![centre - u - v, centre + u - v, centre + u + v, centre - u + v];
+            let mesh = Mesh { positions, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() };
+            // Also placed twice, near and far below, and traced in object space: rounding happens elsewhere there.
+            for copies in [1, 2] {
+                let options = BuildOptions { bake_budget: 0, ..BuildOptions::default() };
+                let away = Affine3A::from_translation(rotation * Vec3::Y * -3.0 * half);
+                let placements = [Affine3A::IDENTITY, away];
+                let scene = Scene {
+                    meshes: vec![mesh.clone()],
+                    instances: placements[..copies]
+                        .iter()
+                        .map(|&world_from_object| Instance { mesh: 0, world_from_object })
+                        .collect(),
+                    materials: vec![Material::default()],
+                    ..Scene::default()
+                };
+                let settings = Settings {
+                    size: Size { width: 48, height: 48 },
+                    radius: Auto::Value(1.0),
+                    camera_position: Auto::Value((rotation * Vec3::Y * 2.0).into()),
+                    camera_target: Auto::Value((rotation * Vec3::new(0.01, 0.0, 0.02)).into()),
+                    ..Settings::default()
+                };
+                let renderer = Renderer::with_options(scene, options);
+                let frame =
+                    renderer.render(&settings, Control::default()).unwrap_or_else(|error| panic!("{error}"));
+                let wrong = frame.ambient_raw.iter().filter(|v| v.x != 1.0).count();
+                assert_eq!(wrong, 0, "half size {half}, orientation {turn}, {copies} instances");
+            }
+        }
+    }
 }

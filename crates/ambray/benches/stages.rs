@@ -35,7 +35,7 @@ impl Trace for Free {
 impl World for Free {
     fn diffuse_at(&self, ray: &Ray, hit: &Hit, _width: f32) -> Diffuse {
         let position = ray.origin + hit.t * ray.direction;
-        Diffuse { position, geometric_normal: -ray.direction, albedo: Vec3::splat(0.5) }
+        Diffuse { position, geometric_normal: -ray.direction, reach: 0.0, albedo: Vec3::splat(0.5) }
     }
 }
 
@@ -51,6 +51,7 @@ fn gathering(c: &mut Criterion) {
         .map(|i| ShadedPoint {
             position: Vec3::new((i % 16) as f32, 0.0, (i / 16) as f32) * 0.01,
             geometric_normal: Vec3::Y,
+            reach: 0.0,
             normal: Vec3::Y,
             key: PixelKey { class: (i / 16) as u8, hash: i },
         })

@@ -32,7 +32,7 @@ pub use ambray_core::{
     settings,
     view::View,
 };
-pub use ambray_cpu::Isa;
+pub use ambray_cpu::{BuildOptions, Isa, Quality, Width};
 pub use ambray_scene as scene;
 pub use renderer::{BuildStats, RenderError, Renderer};
 

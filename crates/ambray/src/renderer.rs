@@ -89,8 +89,17 @@ impl Renderer {
     /// If indices within the scene are out of range; scenes that were loaded are sound.
     #[must_use]
     pub fn new(scene: Scene) -> Self {
+        Self::with_options(scene, BuildOptions::default())
+    }
+
+    /// As [`new`](Self::new), with a choice of effort, memory and instruction set.
+    ///
+    /// # Panics
+    /// As [`new`](Self::new), and if the machine lacks the instruction set asked for.
+    #[must_use]
+    pub fn with_options(scene: Scene, options: BuildOptions) -> Self {
         let scene = Arc::new(scene);
-        let backend = CpuBackend::new(Arc::clone(&scene), BuildOptions::default());
+        let backend = CpuBackend::new(Arc::clone(&scene), options);
         Self { bounds: scene.bounds(), scene, backend }
     }
 

@@ -5,7 +5,7 @@ use ambray_core::{
     light::Light,
     offset::RayOffset,
     openness::Openness,
-    settings::{Auto, Falloff, Rgb, Settings, Triple},
+    settings::{Auto, Falloff, NearRadiance, Rgb, Settings, Triple},
     trace::Trace,
     view::View,
 };
@@ -20,6 +20,8 @@ const SUN_STRENGTH: f32 = 3.0;
 const SUN_DIRECTION: Vec3 = Vec3::new(0.4, 1.0, 0.3);
 /// σ·R of the exponential falloffs where no rate is set: μ(R) = 0.95 (spec §13).
 const SIGMA_RADIUS: f32 = 3.0;
+/// Background where nobody chose an ambient radiance: the white of the default would hide white objects.
+const BACKGROUND: Vec3 = Vec3::splat(0.2);
 /// Vertical angle of view where no camera says otherwise, degrees.
 const VERTICAL_FOV: f32 = 50.0;
 
@@ -33,17 +35,20 @@ pub(crate) fn view(
     let bounds = bounds.unwrap_or((Vec3::NEG_ONE, Vec3::ONE));
     let radius = settings.radius.value().copied().or(scene.radius).unwrap_or_else(|| framing::radius(bounds));
     let openness = openness(settings, radius);
+    // All hits keep the weighted average equal to the sum per hit; the plain one ends at R (spec §3).
+    let plain = settings.near_radiance == NearRadiance::AveragedPlain;
+    let near_limit = if plain { radius } else { openness.reach() };
     let rgb = |color: &Auto<Rgb>| color.value().map(|&color| Vec3::from(color));
-    let ambient = rgb(&settings.ambient).or(scene.ambient).unwrap_or(Vec3::ONE);
+    let sky = rgb(&settings.ambient).or(scene.ambient);
     let (camera, camera_origin) = camera(settings, scene, bounds, trace)?;
     Ok(View {
         camera,
         camera_origin,
         radius,
         openness,
-        near_limit: settings.near_limit.unwrap_or(openness.reach()),
-        ambient,
-        background: rgb(&settings.background).unwrap_or(ambient),
+        near_limit: settings.near_limit.unwrap_or(near_limit),
+        ambient: sky.unwrap_or(Vec3::ONE),
+        background: rgb(&settings.background).or(sky).unwrap_or(BACKGROUND),
         offset: RayOffset::for_extent(bounds.0.abs().max(bounds.1.abs()).max_element()),
         lights: lights(settings, scene),
     })
@@ -64,10 +69,15 @@ fn lights(settings: &Settings, scene: &Scene) -> Vec<Light> {
     let direction = settings.sun_direction.value().map(|&direction| Vec3::from(direction));
     let strength = settings.sun_strength.unwrap_or(if direction.is_some() { SUN_STRENGTH } else { 0.0 });
     if strength > 0.0 {
-        let to_light = direction.unwrap_or(SUN_DIRECTION).normalize();
+        let to_light = unit(direction.unwrap_or(SUN_DIRECTION));
         lights.push(Light::Directional { to_light, irradiance: Vec3::from(settings.sun_color) * strength });
     }
     lights
+}
+
+/// Unit vector along `v`, which is finite and not zero but may be as small or large as numbers are.
+fn unit(v: Vec3) -> Vec3 {
+    (v / v.abs().max_element()).normalize()
 }
 
 /// The camera that the settings ask for, and where it came from.
@@ -93,8 +103,11 @@ fn camera(
             (camera, how.to_owned())
         }
     };
-    if position.is_some() || target.is_some() {
-        origin = if position.is_some() && target.is_some() { "given" } else { "partly given" }.to_owned();
+    match (position.is_some(), target.is_some()) {
+        (true, true) => origin = "given".to_owned(),
+        (true, false) => origin += ", moved",
+        (false, true) => origin += ", turned",
+        (false, false) => {}
     }
     let eye = position.unwrap_or(base.position);
     let forward = match target {
@@ -104,7 +117,7 @@ fn camera(
         None => base.forward,
     };
     let up = match vec3(&settings.camera_up) {
-        Some(up) => up.normalize(),
+        Some(up) => unit(up),
         None if target.is_some() => Vec3::Y,
         None => base.up,
     };

@@ -17,6 +17,8 @@ pub struct Receiver {
     pub geometric_normal: Vec3,
     /// Unit normal n of the cosine.
     pub normal: Vec3,
+    /// Reach of its triangle (see [`RayOffset::apply`]), scene units.
+    pub reach: f32,
     /// Seed of the shadow rays.
     pub seed: u32,
 }
@@ -71,7 +73,7 @@ pub fn direct_irradiance(
             let arriving = incident.irradiance * cos;
             let above_horizon = receiver.geometric_normal.dot(incident.to_light) > 0.0;
             if cos > 0.0 && above_horizon && arriving != Vec3::ZERO {
-                let origin = offset.apply(receiver.position, receiver.geometric_normal);
+                let origin = offset.apply(receiver.position, receiver.geometric_normal, receiver.reach);
                 let (direction, t_max) = (incident.to_light, incident.distance);
                 scratch.rays.push(Ray { origin, t_max, direction, seed: receiver.seed });
                 scratch.arriving.push((i as u32, arriving));
@@ -109,7 +111,8 @@ mod tests {
     }
 
     fn receive(lights: &[Light], normal: Vec3, shadows: bool) -> Received {
-        let receiver = Receiver { position: Vec3::ZERO, geometric_normal: Vec3::Y, normal, seed: 0 };
+        let receiver =
+            Receiver { position: Vec3::ZERO, geometric_normal: Vec3::Y, normal, reach: 0.0, seed: 0 };
         let mut received = [Received::default()];
         let lighting = DirectLighting { lights, offset: RayOffset::UNIT, shadows };
         direct_irradiance(&HalfBlocked, lighting, &[receiver], &mut DirectScratch::default(), &mut received);

@@ -60,12 +60,6 @@ impl From<&Settings> for Filter {
 }
 
 impl Filter {
-    /// Whether the filter does anything.
-    #[must_use]
-    pub fn is_on(&self) -> bool {
-        self.window != Window::Off
-    }
-
     /// Acceptance A(p, q) of pixel `q` by pixel `p`, both surfaces: close to its tangent plane or depth, and facing alike.
     #[must_use]
     pub fn accepts(&self, p: &Guide, q: &Guide) -> bool {

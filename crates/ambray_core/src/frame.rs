@@ -16,6 +16,8 @@ pub struct GBufferPixel {
     pub depth: f32,
     /// Unit normal of the triangle towards the viewer.
     pub geometric_normal: Vec3,
+    /// Reach of the triangle (see [`RayOffset::apply`](crate::offset::RayOffset::apply)), scene units.
+    pub reach: f32,
     /// Unit normal that directs the rays.
     pub shading_normal: Vec3,
     /// Unit normal without normal map, which the filter compares.
@@ -40,6 +42,7 @@ impl GBufferPixel {
         position: Vec3::ZERO,
         depth: f32::INFINITY,
         geometric_normal: Vec3::ZERO,
+        reach: 0.0,
         shading_normal: Vec3::ZERO,
         smooth_normal: Vec3::ZERO,
         albedo: Vec3::ZERO,

@@ -156,7 +156,6 @@ pub struct SampleSets {
     sampling: Sampling,
     sequence: Sequence,
     spp: u32,
-    seeds: [u32; 2],
     /// Directions of class k at `[k·N, (k+1)·N)`; only class 0 for `same`, empty for per-pixel sets.
     table: Vec<SampleDirection>,
 }
@@ -181,7 +180,7 @@ impl SampleSets {
         let table = (0..classes * spp)
             .map(|i| SampleDirection::from_bits(sequence_point(sequence, first.wrapping_add(i), seeds)))
             .collect();
-        Self { sampling, sequence, spp, seeds, table }
+        Self { sampling, sequence, spp, table }
     }
 
     /// The same given points of the unit square for every pixel.
@@ -192,19 +191,13 @@ impl SampleSets {
             .map(|&xi| SampleDirection { local: cosine_hemisphere(xi), azimuth: xi.y })
             .collect();
         let spp = table.len() as u32;
-        Self { sampling: Sampling::Same, sequence: Sequence::Auto, spp, seeds: DEFAULT_SEEDS, table }
+        Self { sampling: Sampling::Same, sequence: Sequence::Auto, spp, table }
     }
 
     /// Number N of directions in a set.
     #[must_use]
     pub const fn spp(&self) -> u32 {
         self.spp
-    }
-
-    /// Scrambles in use, one for each dimension.
-    #[must_use]
-    pub const fn seeds(&self) -> [u32; 2] {
-        self.seeds
     }
 
     /// Direction number `j` < N of the pixel.

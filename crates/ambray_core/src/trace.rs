@@ -3,6 +3,8 @@
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
+use crate::sampling::{pcg, unit_float};
+
 /// A ray segment from `origin` along the unit vector `direction`, for parameters t in (0, `t_max`).
 ///
 /// `t_min` is always 0: origins are moved off their surface by [`RayOffset`](crate::offset::RayOffset)
@@ -62,17 +64,17 @@ pub trait Trace: Sync {
     fn any_hits(&self, rays: &[Ray], blocked: &mut [bool]);
 }
 
-/// Threshold in `[0, 1)` against which a blended surface of `instance` compares its alpha for a ray with this `seed`:
-/// the candidate counts as a hit if `alpha > threshold`.
+/// Threshold in `[0, 1)` against which a blended `triangle` of `instance` compares its alpha for a ray with this
+/// `seed`: the candidate counts as a hit if `alpha > threshold`.
 ///
-/// The stratum in the low 4 bits of the seed makes 16 neighbouring pixels cover `[0, 1)` evenly; the rotation by a hash
-/// of the rest and the instance makes layers independent of each other, so transmittance is right on average.
+/// The stratum in the low 4 bits of the seed makes 16 neighbouring pixels cover `[0, 1)` evenly on a triangle; the
+/// rotation by a hash of the rest and of the triangle makes layers independent of each other, also the two walls of one
+/// bottle, so transmittance is right on average.
 #[must_use]
-pub fn alpha_threshold(seed: u32, instance: u32) -> f32 {
+pub fn alpha_threshold(seed: u32, instance: u32, triangle: u32) -> f32 {
     let stratum = ((seed & 15) as f32 + 0.5) / 16.0;
-    let rotation =
-        crate::sampling::unit_float(crate::sampling::pcg(crate::sampling::pcg(seed >> 4) ^ instance));
-    (stratum + rotation).fract()
+    let layer = pcg(pcg(pcg(seed >> 4) ^ instance) ^ triangle);
+    (stratum + unit_float(layer)).fract()
 }
 
 /// Diffuse surface at the end of a ray: what the radiance of a hit depends on.
@@ -82,6 +84,8 @@ pub struct Diffuse {
     pub position: Vec3,
     /// Unit geometric normal on the side that the ray came from.
     pub geometric_normal: Vec3,
+    /// Reach of the triangle (see [`RayOffset::apply`](crate::offset::RayOffset::apply)), scene units.
+    pub reach: f32,
     /// Albedo a, linear RGB in `[0, 1]`.
     pub albedo: Vec3,
 }

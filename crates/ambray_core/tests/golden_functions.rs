@@ -34,7 +34,7 @@ fn fuzzy_measures() {
 #[test]
 fn ray_offsets_bit_for_bit() {
     for case in list(&golden("functions")["offset_float32"]) {
-        let out = RayOffset::UNIT.apply(vec3(&case["p"]), vec3(&case["n"]));
+        let out = RayOffset::UNIT.apply(vec3(&case["p"]), vec3(&case["n"]), 0.0);
         let bits: Vec<u32> = list(&case["out_bits"]).iter().map(integer).collect();
         assert_eq!(out.to_array().map(f32::to_bits), bits[..], "{case}");
     }

@@ -145,7 +145,7 @@ fn ambient_batches(scene: &Scene, tracer: &impl Trace, eye: Vec3, target: Vec3) 
                     for &(key, (position, normal)) in pixels {
                         let basis = basis(normal);
                         rays.push(Ray {
-                            origin: RayOffset::UNIT.apply(position, normal),
+                            origin: RayOffset::UNIT.apply(position, normal, 0.0),
                             t_max: 1.0,
                             direction: (basis * sets.direction(key, sample).local).normalize(),
                             seed: key.ray_seed(sample),

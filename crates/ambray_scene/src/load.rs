@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use glam::Vec4;
+
 use crate::error::{Fault, LoadError, Outcome};
 use crate::files::{Folder, read_regular};
 use crate::warnings::Warnings;
@@ -62,6 +64,13 @@ fn read(path: &Path, options: &LoadOptions) -> Outcome<Loaded> {
         _ if gltf::is_glb(&bytes) => gltf::load(&bytes, true, &mut folder, options, &mut warnings)?,
         _ => return Err(Fault::unsupported("", "not a .gltf, .glb or .obj file")),
     };
+    let mut clamped = 0;
+    for material in &mut scene.materials {
+        let color = material.base_color.clamp(Vec4::ZERO, Vec4::ONE);
+        clamped += u64::from(color != material.base_color);
+        material.base_color = color;
+    }
+    warnings.tally("base colours above 1 are clamped: no surface reflects more than it receives", clamped);
     if scene.instances.is_empty() {
         warnings.push("the scene shows no triangles".into());
     }

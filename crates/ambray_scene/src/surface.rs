@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use ambray_core::trace::{Hit, alpha_threshold};
-use glam::{Mat3A, Vec2, Vec3, Vec3A, Vec4};
+use glam::{Affine3A, Mat3A, Vec2, Vec3, Vec3A, Vec4};
 
 use crate::{AlphaMode, Instance, Material, Mesh, Scene, TextureRef};
 
@@ -24,6 +24,8 @@ pub struct Surfaces {
 struct Frame {
     /// Turns normals; does not keep their length.
     normal_from_object: Mat3A,
+    /// Magnitudes of the placement: bounds the magnitudes that a placed point is computed from.
+    magnitude: Affine3A,
     /// -1 where the placement mirrors, which turns the winding of triangles around, else 1.
     side: f32,
 }
@@ -35,6 +37,8 @@ pub struct SurfacePoint {
     pub position: Vec3,
     /// Unit normal of the triangle, on the side from which its corners run counter-clockwise before mirroring.
     pub geometric_normal: Vec3,
+    /// Largest magnitude of the numbers that the triangle's corners are computed from: what rounding errors follow.
+    pub reach: f32,
     /// Unit interpolated vertex normal; the geometric one where there is none.
     pub smooth_normal: Vec3,
     /// The smooth normal bent by the normal map, unit.
@@ -56,24 +60,23 @@ pub struct DiffusePoint {
     pub position: Vec3,
     /// Unit normal of the triangle.
     pub geometric_normal: Vec3,
+    /// Largest magnitude of the numbers that the triangle's corners are computed from.
+    pub reach: f32,
     /// Base colour × texture × vertex colour.
     pub albedo: Vec3,
-    /// Emitted radiance.
-    pub emission: Vec3,
 }
 
 impl SurfacePoint {
-    /// The same point seen along `direction`: the geometric normal is turned against it, the other two to the side of
-    /// the geometric one.
+    /// The same point seen along `direction`: the geometric normal is turned against it, the smooth one to the side of
+    /// the geometric one, and the shading normal goes with the smooth one. So a normal map may bend it below the horizon
+    /// of the triangle, but never jumps to the other side.
     #[must_use]
     pub fn facing(self, direction: Vec3) -> Self {
         let geometric_normal = towards(self.geometric_normal, -direction);
-        Self {
-            geometric_normal,
-            smooth_normal: towards(self.smooth_normal, geometric_normal),
-            shading_normal: towards(self.shading_normal, geometric_normal),
-            ..self
-        }
+        let turned = self.smooth_normal.dot(geometric_normal) < 0.0;
+        let turn = |v: Vec3| if turned { -v } else { v };
+        let (smooth_normal, shading_normal) = (turn(self.smooth_normal), turn(self.shading_normal));
+        Self { geometric_normal, smooth_normal, shading_normal, ..self }
     }
 }
 
@@ -100,7 +103,11 @@ impl Surfaces {
         let frame = |instance: &Instance| {
             let m = instance.world_from_object.matrix3;
             let side = if m.determinant() < 0.0 { -1.0 } else { 1.0 };
-            Frame { normal_from_object: normal_matrix(m), side }
+            let magnitude = Affine3A {
+                matrix3: Mat3A::from_cols(m.x_axis.abs(), m.y_axis.abs(), m.z_axis.abs()),
+                translation: instance.world_from_object.translation.abs(),
+            };
+            Frame { normal_from_object: normal_matrix(m), magnitude, side }
         };
         let frames = scene.instances.iter().map(frame).collect();
         let opaque = is_opaque_by_mesh(&scene);
@@ -135,7 +142,7 @@ impl Surfaces {
             AlphaMode::Opaque => true,
             AlphaMode::Mask(cutoff) => self.alpha_of(mesh, material, triangle, u, v) >= cutoff,
             AlphaMode::Blend => {
-                self.alpha_of(mesh, material, triangle, u, v) > alpha_threshold(seed, instance)
+                self.alpha_of(mesh, material, triangle, u, v) > alpha_threshold(seed, instance, triangle)
             }
         }
     }
@@ -148,6 +155,7 @@ impl Surfaces {
         SurfacePoint {
             position: at.position(),
             geometric_normal: at.geometric_normal,
+            reach: at.reach(),
             smooth_normal,
             shading_normal: at.shading_normal(smooth_normal),
             albedo: at.albedo(),
@@ -164,8 +172,8 @@ impl Surfaces {
         DiffusePoint {
             position: at.position(),
             geometric_normal: at.geometric_normal,
+            reach: at.reach(),
             albedo: at.albedo(),
-            emission: at.emission(),
         }
     }
 
@@ -246,6 +254,14 @@ impl<'s> At<'s> {
         // From the first corner along the edges: exact where edges are short and far from the origin.
         let [a, b, c] = self.points;
         (a + (b - a) * self.weights[1] + (c - a) * self.weights[2]).into()
+    }
+
+    fn reach(&self) -> f32 {
+        let object = self.corners.map(|i| Vec3A::from(self.mesh.positions[i as usize]).abs());
+        object
+            .map(|p| self.frame.magnitude.transform_point3a(p).max_element())
+            .into_iter()
+            .fold(0.0, f32::max)
     }
 
     fn vertex_normal(&self) -> Option<Vec3> {
@@ -383,7 +399,7 @@ const ROUNDING: f32 = 1e-6;
 mod tests {
     use super::*;
     use crate::{Image, Sampler, Texture, Wrap};
-    use glam::{Affine2, Affine3A, Quat};
+    use glam::{Affine2, Quat};
 
     /// One triangle (0,0,0), (1,0,0), (0,1,0) with upright texture coordinates.
     fn mesh() -> Mesh {
@@ -463,6 +479,22 @@ mod tests {
         let behind = point.facing(Vec3::Z);
         assert_eq!(behind.geometric_normal, -point.geometric_normal);
         assert_eq!(behind.smooth_normal, -point.smooth_normal);
+        // A normal map may bend the shading normal below the horizon; it must not be turned around there.
+        let bent = SurfacePoint { shading_normal: Vec3::new(0.996, 0.0, -0.089), ..point };
+        assert_eq!(bent.facing(Vec3::NEG_Z), bent);
+    }
+
+    #[test]
+    fn reach_bounds_what_corners_are_computed_from() {
+        let moved = Affine3A::from_scale_rotation_translation(
+            Vec3::splat(2.0),
+            Quat::IDENTITY,
+            Vec3::new(-1.0, 5.0, 0.0),
+        );
+        for (placement, reach) in [(Affine3A::IDENTITY, 1.0), (moved, 7.0)] {
+            let point = surfaces(mesh(), Material::default(), vec![], placement).surface_at(&HIT, 0.0);
+            assert_eq!(point.reach, reach);
+        }
     }
 
     #[test]
@@ -517,16 +549,12 @@ mod tests {
         let hit = Hit { u: 0.125, v: 0.2, ..HIT }; // centre of the first texel
         let fine = surfaces.diffuse_at(&hit, 0.0);
         assert_near(fine.albedo, Vec3::new(0.25, 0.0, 0.0));
-        assert_near(fine.emission, Vec3::X);
+        assert_near(surfaces.surface_at(&hit, 0.0).emission, Vec3::X);
         // The triangle's texture spans 8 units: a footprint of 8 averages all of it.
-        let coarse = surfaces.diffuse_at(&hit, 8.0);
-        assert!(
-            (coarse.emission - Vec3::new(0.5, 0.0, 0.5)).abs().max_element() < 5e-3,
-            "{}",
-            coarse.emission
-        );
-        let point = surfaces.surface_at(&hit, 8.0);
-        assert_eq!((point.albedo, point.emission), (coarse.albedo, coarse.emission));
+        let coarse = surfaces.surface_at(&hit, 8.0);
+        let error = (coarse.emission - Vec3::new(0.5, 0.0, 0.5)).abs().max_element();
+        assert!(error < 5e-3, "{}", coarse.emission);
+        assert_eq!(coarse.albedo, surfaces.diffuse_at(&hit, 8.0).albedo);
     }
 
     #[test]

@@ -110,12 +110,13 @@ impl Image {
 impl Sampler {
     /// Linear RGBA at `uv`, for a footprint of `width` texture units (1 = the whole image; 0 reads level 0).
     ///
-    /// Texel (i, j) has its centre at (i + ½, j + ½) / size. The mip level is log₂(`width` · max(size)); at level 0 and
+    /// Texel (i, j) has its centre at (i + ½, j + ½) / size. The mip level is log₂(`width` · √(texels of the image)); at level 0 and
     /// below the image is magnified. Each texel is decoded before it is filtered. A `uv` that is not finite reads as 0.
     #[must_use]
     pub fn sample(&self, image: &Image, uv: Vec2, width: f32) -> Vec4 {
         let full = &image.levels[0];
-        let level = libm::log2f(width * full.width.max(full.height) as f32);
+        // The width is the root of an area of the texture, so it counts texels by the root of theirs.
+        let level = libm::log2f(width * (full.width as f32 * full.height as f32).sqrt());
         // The logarithm of negative widths is NaN.
         if level.is_nan() || level <= 0.0 {
             return self.at_level(image, 0, self.mag, uv);
@@ -295,9 +296,12 @@ mod tests {
 
     #[test]
     fn footprint_chooses_the_level() {
-        let image = row(&[0, 0, 0, 0, 200, 200, 200, 200]);
+        // A square image whose rows are alike, so that levels along u are those of the row.
+        let grey = |i: u8| if i % 8 < 4 { 0 } else { 200 };
+        let texels = (0..64).map(|i| [grey(i), grey(i), grey(i), 255]).collect();
+        let image = Image::new(String::new(), 8, 8, texels, false);
         assert_eq!(image.levels.len(), 4);
-        let uv = Vec2::new(0.0625, 0.5); // centre of the first texel
+        let uv = Vec2::new(0.0625, 0.5); // centre of the first texel of a row
         let red = |mip, width: f32| {
             let sampler = Sampler { wrap: [Wrap::Clamp; 2], mip, ..Sampler::default() };
             sampler.sample(&image, uv, width).x * 255.0
@@ -311,6 +315,20 @@ mod tests {
         assert_eq!(red(Some(Filter::Nearest), 2f32.powf(2.4) / 8.0), 0.0);
         assert!((red(Some(Filter::Nearest), 2f32.powf(2.6) / 8.0) - 100.0).abs() < 1e-3);
         assert_eq!(red(None, 1.0), 0.0);
+    }
+
+    /// Whatever the aspect of the image, a footprint of one texel reads one texel.
+    #[test]
+    fn a_footprint_of_one_texel_is_not_blurred() {
+        for (width, height) in [(16_u32, 16_u32), (256, 16), (16, 256)] {
+            let stripe = |i: u32| [if (i % width).is_multiple_of(2) { 255 } else { 0 }, 0, 0, 255];
+            let image =
+                Image::new(String::new(), width, height, (0..width * height).map(stripe).collect(), false);
+            let uv = Vec2::new(2.5 / width as f32, 2.5 / height as f32);
+            let texel = 1.0 / (width as f32 * height as f32).sqrt();
+            let red = Sampler::default().sample(&image, uv, texel).x;
+            assert!((red - 1.0).abs() < 1e-3, "{width} × {height}: {red}");
+        }
     }
 
     #[test]

@@ -76,7 +76,7 @@ impl FirstBatch {
         for run in points.chunk_by(|a, b| a.key.class == b.key.class) {
             self.starts.clear();
             self.starts.extend(run.iter().map(|point| {
-                let origin = params.offset.apply(point.position, point.geometric_normal);
+                let origin = params.offset.apply(point.position, point.geometric_normal, point.reach);
                 (Basis::from_normal(point.normal), origin)
             }));
             for j in 0..spp {

@@ -9,7 +9,7 @@ mod thin;
 
 use std::f32::consts::PI;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use crate::{
     light::Light,
@@ -34,6 +34,8 @@ pub struct ShadedPoint {
     pub position: Vec3,
     /// Unit geometric normal on the lit side.
     pub geometric_normal: Vec3,
+    /// Reach of its triangle (see [`RayOffset::apply`]), scene units.
+    pub reach: f32,
     /// Unit normal n about which directions are sampled.
     pub normal: Vec3,
     /// Which samples the point uses.
@@ -164,31 +166,35 @@ fn gather_batch(
 
 /// Openness, near radiance and bent normal of one point from its traced rays (spec §§3, 8).
 fn combine(params: &GatherParams<'_>, samples: &[Sample], second: &SecondBatch, gathered: &mut Gathered) {
+    // Sums in double precision: adding 65536 rays in single precision errs by 1e-3.
     let mut open = 0.0;
-    let mut bent = Vec3::ZERO;
+    let mut bent = DVec3::ZERO;
     // Σ (1 - μ) L_r, and the sums of the average: weights and weighted radiances.
-    let (mut per_hit, mut weight, mut weighted) = (Vec3::ZERO, 0.0, Vec3::ZERO);
+    let (mut per_hit, mut weight, mut weighted) = (DVec3::ZERO, 0.0, DVec3::ZERO);
     for sample in samples {
-        let mu = params.openness.at(sample.distance);
+        let mu = f64::from(params.openness.at(sample.distance));
+        let radiance = sample.radiance.as_dvec3();
         open += mu;
-        bent += mu * sample.direction;
-        per_hit += (1.0 - mu) * sample.radiance;
+        bent += mu * sample.direction.as_dvec3();
+        per_hit += (1.0 - mu) * radiance;
         if sample.distance < params.near_limit {
             let w = if params.near_radiance == NearRadiance::AveragedPlain { 1.0 } else { 1.0 - mu };
             weight += w;
-            weighted += w * sample.radiance;
+            weighted += w * radiance;
         }
     }
-    let per_sample = 1.0 / samples.len() as f32;
-    let (first, per_hit) = (open * per_sample, per_hit * per_sample);
-    let mean = |weighted: Vec3, weight: f32| if weight > 0.0 { weighted / weight } else { Vec3::ZERO };
+    let count = samples.len() as f64;
+    let (first, per_hit) = ((open / count) as f32, (per_hit / count).as_vec3());
+    let (chord_weight, chord_weighted) = (f64::from(second.weight), second.weighted_radiance.as_dvec3());
+    let mean =
+        |weighted: DVec3, weight: f64| if weight > 0.0 { (weighted / weight).as_vec3() } else { Vec3::ZERO };
     // Near radiance that is consistent with an openness o (spec §8.1).
     let near = |o: f32| match params.near_radiance {
         NearRadiance::Off => Vec3::ZERO,
         NearRadiance::PerHit if first < 1.0 => per_hit * ((1.0 - o) / (1.0 - first)),
-        NearRadiance::PerHit => mean(second.weighted_radiance, second.weight) * (1.0 - o),
+        NearRadiance::PerHit => mean(chord_weighted, chord_weight) * (1.0 - o),
         NearRadiance::Averaged | NearRadiance::AveragedPlain => {
-            mean(weighted + second.weighted_radiance, weight + second.weight) * (1.0 - o)
+            mean(weighted + chord_weighted, weight + chord_weight) * (1.0 - o)
         }
     };
     let openness = first.min(second.openness);
@@ -198,7 +204,7 @@ fn combine(params: &GatherParams<'_>, samples: &[Sample], second: &SecondBatch, 
     gathered.near_first = near(first);
     gathered.second = second.openness;
     gathered.near_second = near(second.openness);
-    gathered.bent = bent * per_sample;
+    gathered.bent = (bent / count).as_vec3();
 }
 
 impl GatherParams<'_> {

@@ -1,10 +1,9 @@
 //! Radiance L_r that leaves a hit (spec §3).
 
-use std::f32::consts::FRAC_1_PI;
-
 use glam::Vec3;
 
 use crate::{
+    compose::reflected,
     direct::{DirectLighting, DirectScratch, Received, Receiver, direct_irradiance},
     sampling::pcg,
     settings::RadianceSource,
@@ -37,6 +36,7 @@ impl RadianceScratch {
             position: surface.position,
             geometric_normal: surface.geometric_normal,
             normal: surface.geometric_normal,
+            reach: surface.reach,
             seed: pcg(ray.seed),
         });
         self.albedo.push(surface.albedo);
@@ -63,7 +63,7 @@ impl RadianceScratch {
                 RadianceSource::Albedo | RadianceSource::SelfSimilar => albedo,
                 RadianceSource::Ambient => albedo * params.ambient,
                 RadianceSource::Lit | RadianceSource::LitUnshadowed => {
-                    albedo * (params.ambient + received.irradiance * FRAC_1_PI)
+                    albedo * params.ambient + reflected(albedo, received.irradiance)
                 }
             };
             (tag, radiance, received.shadow_rays)

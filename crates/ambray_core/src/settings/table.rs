@@ -87,7 +87,7 @@ settings! {
     /// Ambient radiance of the far environment, linear RGB, or auto (the scene's, else white)
     #[arg(value_name = "R,G,B")]
     ambient: Auto<Rgb> = Auto::Auto;
-    /// Colour where no surface is seen, linear RGB, or auto (the ambient radiance)
+    /// Colour where no surface is seen, linear RGB, or auto (the ambient radiance if one is set, else grey)
     #[arg(value_name = "R,G,B")]
     background: Auto<Rgb> = Auto::Auto;
 
@@ -95,7 +95,7 @@ settings! {
     /// How near-field radiance is estimated from the hits
     #[arg(value_enum, value_name = "MODE")]
     near_radiance: NearRadiance = NearRadiance::Averaged;
-    /// Distance in scene units below which hits enter the average, or auto (all of them)
+    /// Distance in scene units below which hits enter the averages, or auto (all hits; the radius for averaged-plain)
     #[arg(value_name = "LENGTH")]
     near_limit: Auto<f32> = Auto::Auto;
     /// Radiance that leaves a hit

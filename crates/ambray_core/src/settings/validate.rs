@@ -16,7 +16,7 @@ pub struct SettingsError {
 
 /// Pictures up to this many pixels a side.
 const MAX_SIDE: u32 = 32_768;
-/// Pixels of a picture: about 30 GB of planes would follow from more.
+/// Pixels of a picture: their planes take 55 GB.
 const MAX_PIXELS: u64 = 1 << 28;
 /// Rays per pixel.
 const MAX_SPP: u32 = 65_536;
@@ -33,12 +33,13 @@ impl Settings {
                 errors.push(SettingsError { name, value, allowed });
             }
         };
-        let length = |v: f32| v.is_finite() && v > 0.0;
+        let length = |v: f32| (1e-15..=1e15).contains(&v);
         let optional = |v: &Auto<f32>| v.value().is_none_or(|&v| length(v));
         let color = |c: [f32; 3]| c.iter().all(|v| v.is_finite() && *v >= 0.0);
         let direction = |v: [f32; 3]| v.iter().all(|v| v.is_finite()) && v.iter().any(|&v| v != 0.0);
-        const LENGTH: &str = "a finite number above 0";
-        const OPTIONAL: &str = "auto or a finite number above 0";
+        // Far enough from the ends of single precision that squares of lengths stay numbers.
+        const LENGTH: &str = "1e-15 to 1e15";
+        const OPTIONAL: &str = "auto or 1e-15 to 1e15";
         const COLOR: &str = "three finite numbers, none negative";
         const POINT: &str = "auto or three finite numbers";
         const DIRECTION: &str = "auto or three finite numbers, not all 0";

@@ -73,7 +73,8 @@ pub fn gather_at(case: &Value, samples: &SampleSets, change: impl Fn(&mut Gather
     change(&mut params);
     let normal = vec3(&case["normal"]);
     let key = PixelKey::default();
-    let point = ShadedPoint { position: vec3(&case["point"]), geometric_normal: normal, normal, key };
+    let point =
+        ShadedPoint { position: vec3(&case["point"]), geometric_normal: normal, reach: 0.0, normal, key };
     let mut out = [Gathered::default()];
     gather(&Shapes::new(&case["geometry"]), &params, &[point], &mut GatherScratch::default(), &mut out);
     out[0]
@@ -182,6 +183,7 @@ impl World for Shapes {
         Diffuse {
             position: (ray.origin.as_dvec3() + t * d).as_vec3(),
             geometric_normal,
+            reach: 0.0,
             albedo: self.shapes[i].1,
         }
     }

@@ -11,7 +11,10 @@ mod points;
 mod stages;
 mod world;
 
-use std::{sync::Arc, time::Instant};
+use std::{
+    sync::{Arc, Mutex, PoisonError},
+    time::Instant,
+};
 
 use ambray_core::{
     control::{Cancelled, Control},
@@ -23,7 +26,7 @@ use ambray_core::{
     view::View,
 };
 use ambray_scene::Scene;
-use rayon::ThreadPoolBuildError;
+use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 
 pub use world::CpuWorld;
 
@@ -45,13 +48,15 @@ pub enum BackendError {
 #[derive(Debug)]
 pub struct CpuBackend {
     world: CpuWorld,
+    /// The threads of the last call, kept for the next one.
+    pool: Mutex<Option<(usize, Arc<ThreadPool>)>>,
 }
 
 impl CpuBackend {
     /// Builds the trees of `scene`.
     #[must_use]
     pub fn new(scene: Arc<Scene>, options: BuildOptions) -> Self {
-        Self { world: CpuWorld::new(scene, options) }
+        Self { world: CpuWorld::new(scene, options), pool: Mutex::default() }
     }
 
     /// The scene as the method sees it.
@@ -68,7 +73,7 @@ impl CpuBackend {
         control: Control<'_>,
     ) -> Result<Frame, BackendError> {
         let start = Instant::now();
-        let pool = thread_pool(control)?;
+        let pool = self.pool(control.threads)?;
         let samples = sample_sets(settings);
         let params = gather_params(settings, view, &samples);
         pool.install(|| {
@@ -102,13 +107,23 @@ impl CpuBackend {
     ) -> Result<Vec<QueryResult>, BackendError> {
         let samples = sample_sets(settings);
         let params = gather_params(settings, view, &samples);
-        let pool = thread_pool(control)?;
+        let pool = self.pool(control.threads)?;
         Ok(pool.install(|| points::run(&self.world, settings, view, &params, points, control))?)
     }
-}
 
-fn thread_pool(control: Control<'_>) -> Result<rayon::ThreadPool, ThreadPoolBuildError> {
-    rayon::ThreadPoolBuilder::new().num_threads(control.threads).build()
+    /// `threads` threads, 0 for one a core.
+    fn pool(&self, threads: usize) -> Result<Arc<ThreadPool>, ThreadPoolBuildError> {
+        // The slot is always whole, so a panic of another thread does not matter.
+        let mut slot = self.pool.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((count, pool)) = &*slot
+            && *count == threads
+        {
+            return Ok(Arc::clone(pool));
+        }
+        let pool = Arc::new(ThreadPoolBuilder::new().num_threads(threads).build()?);
+        *slot = Some((threads, Arc::clone(&pool)));
+        Ok(pool)
+    }
 }
 
 fn sample_sets(settings: &Settings) -> SampleSets {

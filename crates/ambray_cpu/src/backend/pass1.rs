@@ -1,12 +1,12 @@
 //! Pass 1: primary visibility, direct light, openness and near radiance (spec §4), tile by tile.
 
 use std::{
-    f32::consts::FRAC_1_PI,
     sync::atomic::{AtomicUsize, Ordering},
     time::{Duration, Instant},
 };
 
 use ambray_core::{
+    compose::{albedo_and_emission, reflected},
     control::{Cancelled, Control},
     direct::{DirectLighting, DirectScratch, Received, Receiver, direct_irradiance},
     filter::Guide,
@@ -187,15 +187,12 @@ impl Job<'_> {
             Normals::Geometric => point.geometric_normal,
             Normals::Shading | Normals::Smooth => point.smooth_normal,
         };
-        let (albedo, emission) = if point.unlit {
-            (Vec3::ZERO, point.albedo + point.emission)
-        } else {
-            (point.albedo, point.emission)
-        };
+        let (albedo, emission) = albedo_and_emission(point.albedo, point.emission, point.unlit);
         let pixel = GBufferPixel {
             position: point.position,
             depth,
             geometric_normal: point.geometric_normal,
+            reach: point.reach,
             shading_normal,
             smooth_normal,
             albedo,
@@ -218,6 +215,7 @@ impl Job<'_> {
             Receiver {
                 position: pixel.position,
                 geometric_normal: pixel.geometric_normal,
+                reach: pixel.reach,
                 normal: pixel.shading_normal,
                 seed: PixelKey::new(x, y, frame, seed).ray_seed(u32::MAX),
             }
@@ -229,7 +227,7 @@ impl Job<'_> {
         direct_irradiance(self.world, lighting, receivers, &mut scratch.direct, received);
         for (&(i, ..), received) in scratch.seen.iter().zip(&scratch.received) {
             let pixel = &mut band.gbuffer[i];
-            pixel.direct = pixel.albedo * received.irradiance * FRAC_1_PI;
+            pixel.direct = reflected(pixel.albedo, received.irradiance);
             pixel.rays += received.shadow_rays;
         }
         scratch.received.iter().map(|received| u64::from(received.shadow_rays)).sum()
@@ -246,6 +244,7 @@ impl Job<'_> {
             ShadedPoint {
                 position: pixel.position,
                 geometric_normal: pixel.geometric_normal,
+                reach: pixel.reach,
                 normal: pixel.shading_normal,
                 key: PixelKey::new(x, y, frame, seed),
             }

@@ -3,10 +3,10 @@
 use std::time::{Duration, Instant};
 
 use ambray_core::{
-    compose::{compose, near_radiance},
+    compose::{compose, near_radiance, smaller_batch},
     control::{Cancelled, Control},
     filter::Filter,
-    settings::{NearRadiance, RadianceSource, Settings},
+    settings::{RadianceSource, Settings},
     view::View,
 };
 use glam::{Vec3, Vec4, Vec4Swizzles};
@@ -34,13 +34,8 @@ pub(super) fn run(
     let width = view.camera.size().0 as usize;
     let pixels = pass1.gbuffer.len();
     let filter = Filter::from(settings);
-    let finish = |v: Vec4| {
-        let near = match settings.near_radiance {
-            NearRadiance::Off => Vec3::ZERO,
-            _ => near_radiance(settings.radiance_source, view.ambient, v.x, v.yzw()),
-        };
-        near.extend(v.x).wxyz()
-    };
+    let finish =
+        |v: Vec4| near_radiance(settings.radiance_source, view.ambient, v.x, v.yzw()).extend(v.x).wxyz();
 
     let mut beauty = vec![Vec3::ZERO; pixels];
     let mut ambient = vec![Vec4::ZERO; pixels];
@@ -68,7 +63,7 @@ pub(super) fn run(
     let raw_is_final = second.is_empty() && settings.radiance_source != RadianceSource::SelfSimilar;
     if !raw_is_final {
         pass1.ambient.par_iter_mut().enumerate().for_each(|(i, raw)| {
-            *raw = finish(second.get(i).map_or(*raw, |&second| smaller(*raw, second)));
+            *raw = finish(second.get(i).map_or(*raw, |&second| smaller_batch(*raw, second)));
         });
     }
     Ok(Pass2 { beauty, ambient, bent, elapsed: start.elapsed() })
@@ -93,13 +88,8 @@ impl Rows {
             let inputs: [&[Vec4]; 3] = [&pass1.ambient, &pass1.bent, &pass1.second];
             filter.filter_row(guides, width, y, inputs, [ambient, bent, &mut self.second]);
             for (first, &second) in ambient.iter_mut().zip(&self.second) {
-                *first = smaller(*first, second);
+                *first = smaller_batch(*first, second);
             }
         }
     }
-}
-
-/// The batch with the smaller openness (spec §8: O = min(O1, A2)), with the near radiance that belongs to it.
-fn smaller(first: Vec4, second: Vec4) -> Vec4 {
-    if second.x < first.x { second } else { first }
 }

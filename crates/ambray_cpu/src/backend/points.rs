@@ -50,7 +50,9 @@ fn shaded_point(point: &QueryPoint, settings: &Settings) -> ShadedPoint {
     let [x, y, z] = point.position.to_array().map(f32::to_bits);
     let hash = PixelKey::new(x, y.wrapping_add(pcg(z)), settings.frame, settings.seed).hash;
     let key = PixelKey { class: point.class, hash };
-    ShadedPoint { position: point.position, geometric_normal: normal, normal, key }
+    // The triangle is not known; the point itself is rounded to its own coordinates at least.
+    let reach = point.position.abs().max_element();
+    ShadedPoint { position: point.position, geometric_normal: normal, reach, normal, key }
 }
 
 fn finish(gathered: &Gathered, settings: &Settings, view: &View) -> QueryResult {

@@ -3,7 +3,10 @@
 use std::sync::Arc;
 
 use ambray_core::trace::{Diffuse, Hit, Ray, Trace, World};
-use ambray_scene::{Scene, surface::Surfaces};
+use ambray_scene::{
+    Scene,
+    surface::{DiffusePoint, Surfaces},
+};
 
 use crate::{BuildOptions, Tracer};
 
@@ -45,9 +48,8 @@ impl Trace for CpuWorld {
 
 impl World for CpuWorld {
     fn diffuse_at(&self, ray: &Ray, hit: &Hit, width: f32) -> Diffuse {
-        let point = self.surfaces.diffuse_at(hit, width);
-        let turned = point.geometric_normal.dot(ray.direction) > 0.0;
-        let geometric_normal = if turned { -point.geometric_normal } else { point.geometric_normal };
-        Diffuse { position: point.position, geometric_normal, albedo: point.albedo }
+        let point = self.surfaces.diffuse_at(hit, width).facing(ray.direction);
+        let DiffusePoint { position, geometric_normal, reach, albedo } = point;
+        Diffuse { position, geometric_normal, reach, albedo }
     }
 }
