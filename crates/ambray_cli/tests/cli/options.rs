@@ -85,7 +85,7 @@ fn every_problem_is_told_with_option_value_and_range() {
         ]);
     assert_eq!(run.stderr.lines().count(), 4, "{}", run.stderr);
     bench.render(&["--size=0x5"]).fails(&["--size 0x5", "1 to 32768"]);
-    bench.render(&["--radius=nan"]).fails(&["--radius NaN", "finite"]);
+    bench.render(&["--radius=nan"]).fails(&["--radius NaN", "1e-15 to 1e15"]);
     bench.render(&["--vertical-fov=180"]).fails(&["--vertical-fov 180", "below 180"]);
     bench.render(&["--camera=nave"]).fails(&["ambray: error: --camera nave"]);
     bench.render(&["--camera-position=1,1,1", "--camera-target=1,1,1"]).fails(&["error: --camera-target"]);
