@@ -11,7 +11,7 @@ use glam::Vec3;
 ///
 /// The published offset follows the point's own coordinates, but the errors of the point and of the tracer follow those
 /// of the triangle it lies on: on a slanted floor of 100 units, a point near the origin is off the plane by more than
-/// 1/65536. So an offset is at least [`ROUNDING`] of the triangle's reach, where that is more.
+/// 1/65536. So an offset is at least 4 ε of the triangle's reach, where that is more.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayOffset {
     /// Coordinates below this take the fixed distance.

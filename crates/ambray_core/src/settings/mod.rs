@@ -1,7 +1,7 @@
 //! What a person sets: plain data with meaning, unit, range and default beside each field.
 //!
 //! [`Settings`] is complete; a [`SettingsPatch`] holds some of the fields and comes from a preset, a file or the
-//! command line. Both are declared once, by the `settings!` table in [`table`], which also makes the flags.
+//! command line. Both are declared once, by the `settings!` table in `table.rs`, which also makes the flags.
 
 mod choices;
 mod preset;
