@@ -1,0 +1,1 @@
+//! Ambray's Vulkan backend: the same picture by hardware ray tracing.
