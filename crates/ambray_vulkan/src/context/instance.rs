@@ -1,0 +1,180 @@
+//! The Vulkan instance, with the messages of its validation layer.
+
+use std::ffi::{CStr, c_void};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use ash::{ext, khr, vk};
+
+use crate::error::{Result, VulkanError};
+
+const VALIDATION_LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
+
+/// Most messages that are kept: a mistake in a loop must not fill the memory.
+const MOST_MESSAGES: usize = 1000;
+
+/// What the validation layer said.
+type Messages = Mutex<Vec<String>>;
+
+/// A Vulkan 1.2 instance and the library it came from.
+pub(crate) struct Instance {
+    pub(crate) raw: ash::Instance,
+    pub(crate) has_debug_utils: bool,
+    messenger: Option<(ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
+    messages: Arc<Messages>,
+    /// Unloads the library when dropped, hence after all else.
+    _entry: ash::Entry,
+}
+
+impl Instance {
+    /// Loads Vulkan; with the validation layer and its checks of synchronisation if `validation`.
+    pub(crate) fn new(validation: bool) -> Result<Self> {
+        // SAFETY: running the initialisers of the system's Vulkan loader is what every Vulkan program does. The library
+        // stays loaded as long as the entry, which the returned value keeps beyond everything loaded through it.
+        let entry = unsafe { ash::Entry::load() }
+            .map_err(|e| VulkanError::NoLoader { why: one_line(&e.to_string()) })?;
+        let extensions = extension_names(&entry, None)?;
+        let has = |list: &[vk::ExtensionProperties], name: &CStr| {
+            list.iter().any(|e| e.extension_name_as_c_str() == Ok(name))
+        };
+        let (portability, debug_utils) = (
+            has(&extensions, khr::portability_enumeration::NAME),
+            validation && has(&extensions, ext::debug_utils::NAME),
+        );
+        let mut names = Vec::new();
+        let mut flags = vk::InstanceCreateFlags::empty();
+        if portability {
+            names.push(khr::portability_enumeration::NAME.as_ptr());
+            flags |= vk::InstanceCreateFlags::ENUMERATE_PORTABILITY_KHR;
+        }
+        if debug_utils {
+            names.push(ext::debug_utils::NAME.as_ptr());
+        }
+        let mut layers = Vec::new();
+        let enabled = [vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
+        let mut checks = vk::ValidationFeaturesEXT::default().enabled_validation_features(&enabled);
+        let application = vk::ApplicationInfo::default()
+            .application_name(c"Ambray")
+            .engine_name(c"Ambray")
+            .api_version(vk::API_VERSION_1_2);
+        let mut info = vk::InstanceCreateInfo::default().application_info(&application).flags(flags);
+        if validation {
+            let of_layer = validation_extensions(&entry)?;
+            layers.push(VALIDATION_LAYER.as_ptr());
+            if has(&of_layer, ext::validation_features::NAME) {
+                names.push(ext::validation_features::NAME.as_ptr());
+                info = info.push_next(&mut checks);
+            }
+        }
+        let info = info.enabled_extension_names(&names).enabled_layer_names(&layers);
+        // SAFETY: every pointer in `info` is to a local that lives until the call returns, and the layers and extensions
+        // named in it were found above.
+        let raw =
+            unsafe { entry.create_instance(&info, None) }.map_err(VulkanError::of("vkCreateInstance"))?;
+        let mut instance = Self {
+            raw,
+            has_debug_utils: debug_utils,
+            messenger: None,
+            messages: Arc::default(),
+            _entry: entry,
+        };
+        if debug_utils {
+            instance.listen()?;
+        }
+        Ok(instance)
+    }
+
+    /// Collects warnings and errors from now on.
+    ///
+    /// The messenger has a create-info of its own: one that was chained to the instance's would carry its chain along.
+    fn listen(&mut self) -> Result<()> {
+        let loader = ext::debug_utils::Instance::new(&self._entry, &self.raw);
+        let info = vk::DebugUtilsMessengerCreateInfoEXT::default()
+            .message_severity(
+                vk::DebugUtilsMessageSeverityFlagsEXT::WARNING | vk::DebugUtilsMessageSeverityFlagsEXT::ERROR,
+            )
+            .message_type(
+                vk::DebugUtilsMessageTypeFlagsEXT::VALIDATION
+                    | vk::DebugUtilsMessageTypeFlagsEXT::PERFORMANCE,
+            )
+            .pfn_user_callback(Some(collect))
+            .user_data(Arc::as_ptr(&self.messages).cast_mut().cast());
+        // SAFETY: the user data is the shared list, which is dropped after the messenger is destroyed (see `Drop`); the
+        // callback only forms a shared reference to it.
+        let messenger = unsafe { loader.create_debug_utils_messenger(&info, None) }
+            .map_err(VulkanError::of("vkCreateDebugUtilsMessengerEXT"))?;
+        self.messenger = Some((loader, messenger));
+        Ok(())
+    }
+
+    /// What the validation layer said so far.
+    pub(crate) fn messages(&self) -> Vec<String> {
+        self.messages.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// All physical devices, in the order of the loader: a device's number is its index.
+    pub(crate) fn physical_devices(&self) -> Result<Vec<vk::PhysicalDevice>> {
+        // SAFETY: the instance is alive.
+        unsafe { self.raw.enumerate_physical_devices() }.map_err(|result| match result {
+            // What loaders return where no driver works.
+            vk::Result::ERROR_INITIALIZATION_FAILED => VulkanError::NoDriver,
+            result => VulkanError::of("vkEnumeratePhysicalDevices")(result),
+        })
+    }
+}
+
+impl Drop for Instance {
+    fn drop(&mut self) {
+        // SAFETY: devices of the instance are destroyed before: contexts drop theirs before this field, and nothing else
+        // makes devices. The messenger goes first since it belongs to the instance.
+        unsafe {
+            if let Some((loader, messenger)) = self.messenger.take() {
+                loader.destroy_debug_utils_messenger(messenger, None);
+            }
+            self.raw.destroy_instance(None);
+        }
+    }
+}
+
+fn extension_names(entry: &ash::Entry, layer: Option<&CStr>) -> Result<Vec<vk::ExtensionProperties>> {
+    // SAFETY: the library is loaded, and a layer that is not there is an error, not undefined.
+    unsafe { entry.enumerate_instance_extension_properties(layer) }
+        .map_err(VulkanError::of("vkEnumerateInstanceExtensionProperties"))
+}
+
+/// Extensions that the validation layer brings along; fails if it is not installed.
+fn validation_extensions(entry: &ash::Entry) -> Result<Vec<vk::ExtensionProperties>> {
+    // SAFETY: the library is loaded.
+    let layers = unsafe { entry.enumerate_instance_layer_properties() }
+        .map_err(VulkanError::of("vkEnumerateInstanceLayerProperties"))?;
+    if !layers.iter().any(|l| l.layer_name_as_c_str() == Ok(VALIDATION_LAYER)) {
+        let feature = format!("the layer {}", VALIDATION_LAYER.to_string_lossy());
+        return Err(VulkanError::Missing { device: "this installation of Vulkan".into(), feature });
+    }
+    extension_names(entry, Some(VALIDATION_LAYER))
+}
+
+fn one_line(text: &str) -> String {
+    text.lines().collect::<Vec<_>>().join(" ")
+}
+
+/// Called by the validation layer, from any thread.
+unsafe extern "system" fn collect(
+    severity: vk::DebugUtilsMessageSeverityFlagsEXT,
+    _kind: vk::DebugUtilsMessageTypeFlagsEXT,
+    data: *const vk::DebugUtilsMessengerCallbackDataEXT<'_>,
+    messages: *mut c_void,
+) -> vk::Bool32 {
+    // SAFETY: the layer passes valid data with a terminated or null message, and the pointer given to the messenger,
+    // which is to a list that outlives it.
+    let (text, messages) = unsafe {
+        let text = (*data).message_as_c_str().unwrap_or(c"(no text)").to_string_lossy();
+        (one_line(&text), &*messages.cast::<Messages>())
+    };
+    let is_error = severity.contains(vk::DebugUtilsMessageSeverityFlagsEXT::ERROR);
+    log::log!(if is_error { log::Level::Error } else { log::Level::Warn }, "{text}");
+    let mut messages = messages.lock().unwrap_or_else(PoisonError::into_inner);
+    if messages.len() < MOST_MESSAGES {
+        messages.push(text);
+    }
+    vk::FALSE
+}
