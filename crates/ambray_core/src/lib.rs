@@ -33,5 +33,6 @@ pub mod openness;
 pub mod query;
 pub mod sampling;
 pub mod settings;
+pub mod shape;
 pub mod trace;
 pub mod view;
