@@ -26,8 +26,11 @@ fn sheets(alpha: f32, layers: &[&[f32]]) -> Scene {
     };
     let mut meshes = vec![mesh(&[0.0], 0)];
     meshes.extend(layers.iter().map(|heights| mesh(heights, 1)));
-    let instances =
-        (0..meshes.len() as u32).map(|mesh| Instance { mesh, world_from_object: Affine3A::IDENTITY });
+    let instances = (0..meshes.len() as u32).map(|mesh| Instance {
+        mesh,
+        world_from_object: Affine3A::IDENTITY,
+        ..Instance::default()
+    });
     Scene {
         instances: instances.collect(),
         meshes,

@@ -13,8 +13,11 @@ fn scene() -> Scene {
         meshes.extend(cuboid(Vec3::new(x, 0.0, z), Vec3::new(0.5, 0.4 + 0.3 * i as f32, 0.6)));
     }
     meshes.push(quad([-2.0, 0.05, 1.6], [0.0, 1.5, 0.0], [3.0, 0.0, 0.3]));
-    let instances =
-        (0..meshes.len() as u32).map(|mesh| Instance { mesh, world_from_object: Affine3A::IDENTITY });
+    let instances = (0..meshes.len() as u32).map(|mesh| Instance {
+        mesh,
+        world_from_object: Affine3A::IDENTITY,
+        ..Instance::default()
+    });
     Scene { instances: instances.collect(), meshes, materials: vec![Material::default()], ..Scene::default() }
 }
 
@@ -156,7 +159,11 @@ fn slanted_floors_do_not_shadow_themselves() {
                     meshes: vec![mesh.clone()],
                     instances: placements[..copies]
                         .iter()
-                        .map(|&world_from_object| Instance { mesh: 0, world_from_object })
+                        .map(|&world_from_object| Instance {
+                            mesh: 0,
+                            world_from_object,
+                            ..Instance::default()
+                        })
                         .collect(),
                     materials: vec![Material::default()],
                     ..Scene::default()

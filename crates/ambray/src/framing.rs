@@ -84,8 +84,9 @@ fn interior(scene: &Scene, (low, high): (Vec3, Vec3), trace: &impl Trace) -> Opt
     let hits = closest_hits(trace, middle, &directions);
     // Near blockers mean that the middle lies within a thing, not within a room.
     let clearance = 0.05 * extent.max_element();
-    let wall =
-        |(hit, direction): (&Hit, &Vec3)| hit.is_hit() && hit.t > clearance && faces(scene, hit, *direction);
+    let wall = |(hit, direction): (&Hit, &Vec3)| {
+        hit.is_hit() && hit.t > clearance && faces(scene, hit, middle, *direction)
+    };
     let around = hits.iter().zip(&directions).filter(|&pair| wall(pair)).count();
     if (around as f32) < INTERIOR_SHARE * DIRECTIONS as f32 {
         return None;
@@ -102,9 +103,15 @@ fn interior(scene: &Scene, (low, high): (Vec3, Vec3), trace: &impl Trace) -> Opt
     Some(if clear > 0.02 * extent.max_element() { (eye, target) } else { (middle, middle - side) })
 }
 
-/// Whether the triangle of `hit` turns its front to a ray along `direction`: counter-clockwise, unless mirrored (glTF 2.0,
-/// §3.7.2.1).
-fn faces(scene: &Scene, hit: &Hit, direction: Vec3) -> bool {
+/// Whether what `hit` is on turns its front to a ray: triangles run counter-clockwise there, unless mirrored (glTF 2.0,
+/// §3.7.2.1), and the front of a shape is its outer side.
+fn faces(scene: &Scene, hit: &Hit, origin: Vec3, direction: Vec3) -> bool {
+    if let Some(instance) = scene.shape_instance(hit.instance) {
+        let object_from_world = instance.world_from_object.inverse();
+        let point = object_from_world.transform_point3(origin + hit.t * direction);
+        let normal = scene.shapes[instance.shape as usize].normal(point);
+        return normal.dot(object_from_world.transform_vector3(direction)) < 0.0;
+    }
     let instance = &scene.instances[hit.instance as usize];
     let world = &instance.world_from_object;
     let [a, b, c] =
@@ -142,7 +149,11 @@ mod tests {
         let mesh = Mesh { positions: (0..8).map(corner).collect(), triangles, ..Mesh::default() };
         let scene = Scene {
             meshes: vec![mesh],
-            instances: vec![Instance { mesh: 0, world_from_object: Affine3A::IDENTITY }],
+            instances: vec![Instance {
+                mesh: 0,
+                world_from_object: Affine3A::IDENTITY,
+                ..Instance::default()
+            }],
             materials: vec![Material::default()],
             ..Scene::default()
         };

@@ -52,7 +52,9 @@ fn terrain() -> Scene {
             }
         }
     }
-    let instances = (0..2).map(|mesh| Instance { mesh, world_from_object: Affine3A::IDENTITY }).collect();
+    let instances = (0..2)
+        .map(|mesh| Instance { mesh, world_from_object: Affine3A::IDENTITY, ..Instance::default() })
+        .collect();
     Scene { meshes: vec![ground, columns], instances, ..Scene::default() }
 }
 

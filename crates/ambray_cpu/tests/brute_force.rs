@@ -166,6 +166,7 @@ fn instances() {
         scene.instances.push(Instance {
             mesh: if i == 11 { 3 } else { i % 2 },
             world_from_object: Affine3A::from_mat3_translation(matrix, random.cube()),
+            ..Instance::default()
         });
     }
     check(&scene, &rays, &Opaque);
@@ -196,7 +197,11 @@ fn alpha() {
     let rays = random_rays(&mut random, &triangles, 1024);
     let mut scene = scene(vec![soup(&triangles[..100]), soup(&triangles[100..200]), soup(&triangles[200..])]);
     check(&scene, &rays, &Holes);
-    scene.instances.push(Instance { mesh: 2, world_from_object: Affine3A::from_scale(Vec3::splat(1.3)) });
+    scene.instances.push(Instance {
+        mesh: 2,
+        world_from_object: Affine3A::from_scale(Vec3::splat(1.3)),
+        ..Instance::default()
+    });
     check(&scene, &rays, &Holes);
 }
 
@@ -258,7 +263,7 @@ fn baked_instances() {
     for i in 0..30 {
         let rotation = Mat3::from_quat(Quat::from_scaled_axis(random.cube() * 3.0));
         let world_from_object = Affine3A::from_mat3_translation(rotation, random.cube());
-        shared.instances.push(Instance { mesh: i % 2, world_from_object });
+        shared.instances.push(Instance { mesh: i % 2, world_from_object, ..Instance::default() });
     }
     let mut own = shared.clone();
     own.meshes = shared.instances.iter().map(|i| shared.meshes[i.mesh as usize].clone()).collect();
@@ -290,7 +295,7 @@ fn baking_keeps_to_its_budget() {
     let copies = BuildOptions::BAKE_BUDGET / 5000;
     for i in 0..copies as u32 {
         let world_from_object = Affine3A::from_translation(Vec3::X * i as f32);
-        scene.instances.push(Instance { mesh: 1, world_from_object });
+        scene.instances.push(Instance { mesh: 1, world_from_object, ..Instance::default() });
     }
     scene.instances.push(scene.instances[0]);
     let tracer = Tracer::build(&scene, Opaque, BuildOptions::default());

@@ -6,6 +6,7 @@ mod decode;
 mod error;
 mod files;
 mod gltf;
+mod implicit;
 pub mod limits;
 mod load;
 pub mod material;
@@ -22,7 +23,7 @@ mod warnings;
 
 pub use error::LoadError;
 pub use load::{LoadOptions, Loaded, SceneChoice, load, load_with};
-pub use material::{AlphaMode, Material, TextureRef};
+pub use material::{AlphaMode, Checker, Material, MaterialKind, TextureRef};
 pub use mesh::Mesh;
-pub use scene::{Instance, Scene, SceneCamera};
+pub use scene::{Instance, Motion, Scene, SceneCamera, ShapeInstance};
 pub use texture::{Filter, Image, Sampler, Texture, Wrap};

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use glam::Vec4;
+use glam::{Vec3, Vec4};
 
 use crate::error::{Fault, LoadError, Outcome};
 use crate::files::{Folder, read_regular};
@@ -69,9 +69,14 @@ fn read(path: &Path, options: &LoadOptions) -> Outcome<Loaded> {
         let color = material.base_color.clamp(Vec4::ZERO, Vec4::ONE);
         clamped += u64::from(color != material.base_color);
         material.base_color = color;
+        if let Some(checker) = &mut material.checker {
+            let color = checker.color.clamp(Vec3::ZERO, Vec3::ONE);
+            clamped += u64::from(color != checker.color);
+            checker.color = color;
+        }
     }
     warnings.tally("base colours above 1 are clamped: no surface reflects more than it receives", clamped);
-    if scene.instances.is_empty() {
+    if scene.instances.is_empty() && scene.shape_instances.is_empty() {
         warnings.push("the scene shows no triangles".into());
     }
     scene.name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();

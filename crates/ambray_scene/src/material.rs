@@ -27,6 +27,63 @@ pub struct Material {
     pub double_sided: bool,
     /// KHR_materials_unlit: the base colour is shown as it is.
     pub unlit: bool,
+    /// A second base colour that alternates with the first; ignored where `unlit`.
+    pub checker: Option<Checker>,
+}
+
+/// Which program shades a material: the index of its callable shader on a GPU.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[repr(u32)]
+pub enum MaterialKind {
+    /// Lit, without emission.
+    #[default]
+    Lit = 0,
+    /// Shown as it is, whatever else it has.
+    Unlit = 1,
+    /// Lit, and emits.
+    Emissive = 2,
+    /// Lit, with a checker; may emit as well.
+    Checker = 3,
+}
+
+/// A solid pattern of cubes in two colours, in object space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Checker {
+    /// Takes the place of the base colour in every other cube, linear RGB. The cube from 0 to `size` has the base colour.
+    pub color: Vec3,
+    /// Edge of a cube, object units, > 0.
+    pub size: f32,
+}
+
+impl Checker {
+    /// Share of a cube by which the pattern is moved towards −x, −y and −z: faces that lie exactly between two layers of
+    /// cubes, as those of boxes and floors do, show one of them instead of the rounding of their points.
+    pub const BIAS: f32 = 1.0 / 1024.0;
+
+    /// The colour at `object_position`, given the material's `base` colour.
+    #[must_use]
+    pub fn at(&self, base: Vec3, object_position: Vec3) -> Vec3 {
+        let cube = (object_position / self.size + Self::BIAS).floor();
+        let sum = cube.x + cube.y + cube.z;
+        // Even sums are twice an integer.
+        if sum - 2.0 * (0.5 * sum).floor() == 0.0 { base } else { self.color }
+    }
+}
+
+impl Material {
+    /// What shades it. Unlit wins over all, and a checker over emission, which it keeps.
+    #[must_use]
+    pub fn kind(&self) -> MaterialKind {
+        if self.unlit {
+            MaterialKind::Unlit
+        } else if self.checker.is_some() {
+            MaterialKind::Checker
+        } else if self.emission != Vec3::ZERO {
+            MaterialKind::Emissive
+        } else {
+            MaterialKind::Lit
+        }
+    }
 }
 
 impl Default for Material {
@@ -42,6 +99,7 @@ impl Default for Material {
             alpha_mode: AlphaMode::Opaque,
             double_sided: false,
             unlit: false,
+            checker: None,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The scene as the backends see it: flat lists that refer to each other by index.
 
-use ambray_core::light::Light;
+use ambray_core::{light::Light, shape::Shape};
 use glam::{Affine3A, Vec3};
 
 use crate::{Image, Material, Mesh, Texture};
@@ -14,7 +14,11 @@ pub struct Scene {
     pub meshes: Vec<Mesh>,
     /// Placed meshes.
     pub instances: Vec<Instance>,
-    /// Materials; never empty if there are meshes.
+    /// Shapes given by formulas, in object space.
+    pub shapes: Vec<Shape>,
+    /// Placed shapes. In hits they are numbered after all of [`instances`](Self::instances).
+    pub shape_instances: Vec<ShapeInstance>,
+    /// Materials; never empty if there are meshes or placed shapes.
     pub materials: Vec<Material>,
     /// Images with samplers.
     pub textures: Vec<Texture>,
@@ -31,12 +35,39 @@ pub struct Scene {
 }
 
 /// A mesh placed in the world.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Instance {
     /// Index into [`Scene::meshes`].
     pub mesh: u32,
     /// Placement; may mirror, must be invertible.
     pub world_from_object: Affine3A,
+    /// What the file's animations do to it.
+    pub motion: Motion,
+}
+
+/// A shape placed in the world. A hit on the i-th one has the instance `instances.len() + i`, triangle 0 and u = v = 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ShapeInstance {
+    /// Index into [`Scene::shapes`].
+    pub shape: u32,
+    /// Index into [`Scene::materials`]. Shapes have no texture coordinates: textures are not read.
+    pub material: u32,
+    /// Placement; may mirror, must be invertible.
+    pub world_from_object: Affine3A,
+    /// What the file's animations do to it.
+    pub motion: Motion,
+}
+
+/// Whether animations of the file move an instance. Acceleration structures never mix what moves with what does not.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Motion {
+    /// Nothing moves it.
+    #[default]
+    Static,
+    /// Its node or an ancestor of it moves, turns or scales.
+    Rigid,
+    /// Its vertices move against each other: by joints or morph weights.
+    Deforming,
 }
 
 /// A camera of the file.
@@ -61,7 +92,8 @@ impl Scene {
         self.instances.iter().map(|i| self.meshes[i.mesh as usize].triangles.len() as u64).sum()
     }
 
-    /// Smallest box around all instances, world space; `None` if nothing is there.
+    /// Smallest box around all instances, world space; `None` if nothing is there. Shapes count with the corners of their
+    /// own box.
     #[must_use]
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
         let points = self.instances.iter().flat_map(|instance| {
@@ -71,8 +103,30 @@ impl Scene {
                 .flatten()
                 .map(move |&i| instance.world_from_object.transform_point3(mesh.positions[i as usize]))
         });
-        points.fold(None, |bounds, p| {
+        let of_shapes = self.shape_instances.iter().flat_map(|instance| {
+            let corners = box_corners(self.shapes[instance.shape as usize].bounds());
+            corners.map(|corner| instance.world_from_object.transform_point3(corner))
+        });
+        points.chain(of_shapes).fold(None, |bounds, p| {
             Some(bounds.map_or((p, p), |(lo, hi): (Vec3, Vec3)| (lo.min(p), hi.max(p))))
         })
     }
+
+    /// The shape that instance `index` of a hit is, or `None` if it is a mesh.
+    ///
+    /// # Panics
+    /// If there is no such instance.
+    #[must_use]
+    pub fn shape_instance(&self, index: u32) -> Option<&ShapeInstance> {
+        let index = (index as usize).checked_sub(self.instances.len())?;
+        Some(&self.shape_instances[index])
+    }
+}
+
+/// Corners of a box given by its lower and upper one.
+pub(crate) fn box_corners((low, high): (Vec3, Vec3)) -> [Vec3; 8] {
+    let pick = |i: usize, bit: usize, low: f32, high: f32| if i >> bit & 1 == 0 { low } else { high };
+    std::array::from_fn(|i| {
+        Vec3::new(pick(i, 0, low.x, high.x), pick(i, 1, low.y, high.y), pick(i, 2, low.z, high.z))
+    })
 }

@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
-use ambray_core::trace::{Hit, alpha_threshold};
+use ambray_core::trace::{Hit, Ray, alpha_threshold};
 use glam::{Affine3A, Mat3A, Vec2, Vec3, Vec3A, Vec4};
 
-use crate::{AlphaMode, Instance, Material, Mesh, Scene, TextureRef};
+use crate::implicit::{ShapeFrame, ShapePoint};
+use crate::{AlphaMode, Instance, Material, MaterialKind, Mesh, Scene, ShapeInstance, TextureRef};
 
 /// Answers questions about points on the surfaces of a scene.
 ///
@@ -13,8 +14,10 @@ use crate::{AlphaMode, Instance, Material, Mesh, Scene, TextureRef};
 #[derive(Clone, Debug)]
 pub struct Surfaces {
     scene: Arc<Scene>,
-    /// One an instance.
+    /// One an instance of a mesh.
     frames: Vec<Frame>,
+    /// One an instance of a shape.
+    shape_frames: Vec<ShapeFrame>,
     /// One a mesh: whether all of it is there for all rays.
     opaque: Vec<bool>,
 }
@@ -33,17 +36,19 @@ struct Frame {
 /// A point on a surface as a camera sees it. Positions and directions are in world space, colours linear RGB.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePoint {
-    /// The point, interpolated from the triangle's corners.
+    /// The point, interpolated from the triangle's corners; on a shape, the point of the ray moved onto it.
     pub position: Vec3,
-    /// Unit normal of the triangle, on the side from which its corners run counter-clockwise before mirroring.
+    /// Unit normal of the triangle, on the side from which its corners run counter-clockwise before mirroring; of a shape on
+    /// its outer side.
     pub geometric_normal: Vec3,
-    /// Largest magnitude of the numbers that the triangle's corners are computed from: what rounding errors follow.
+    /// Largest magnitude of the numbers that the point is computed from, those of the triangle's corners or of the whole
+    /// shape: what rounding errors follow.
     pub reach: f32,
     /// Unit interpolated vertex normal; the geometric one where there is none.
     pub smooth_normal: Vec3,
     /// The smooth normal bent by the normal map, unit.
     pub shading_normal: Vec3,
-    /// Base colour × texture × vertex colour.
+    /// Base colour or checker × texture × vertex colour.
     pub albedo: Vec3,
     /// Emitted radiance.
     pub emission: Vec3,
@@ -58,11 +63,11 @@ pub struct SurfacePoint {
 pub struct DiffusePoint {
     /// The point.
     pub position: Vec3,
-    /// Unit normal of the triangle.
+    /// Unit normal of the triangle or shape.
     pub geometric_normal: Vec3,
-    /// Largest magnitude of the numbers that the triangle's corners are computed from.
+    /// Largest magnitude of the numbers that the point is computed from.
     pub reach: f32,
-    /// Base colour × texture × vertex colour.
+    /// Base colour or checker × texture × vertex colour.
     pub albedo: Vec3,
 }
 
@@ -110,8 +115,10 @@ impl Surfaces {
             Frame { normal_from_object: normal_matrix(m), magnitude, side }
         };
         let frames = scene.instances.iter().map(frame).collect();
+        let shape_frame = |i: &ShapeInstance| ShapeFrame::new(i, &scene.shapes[i.shape as usize]);
+        let shape_frames = scene.shape_instances.iter().map(shape_frame).collect();
         let opaque = is_opaque_by_mesh(&scene);
-        Self { scene, frames, opaque }
+        Self { scene, frames, shape_frames, opaque }
     }
 
     /// The scene that was given.
@@ -129,27 +136,49 @@ impl Surfaces {
     /// Alpha at a point given by barycentrics as in [`Hit`]: base alpha × texture × vertex alpha.
     #[must_use]
     pub fn alpha(&self, instance: u32, triangle: u32, u: f32, v: f32) -> f32 {
+        if let Some(shape) = self.scene.shape_instance(instance) {
+            return self.scene.materials[shape.material as usize].base_color.w;
+        }
         let mesh = self.mesh(instance);
         self.alpha_of(mesh, &self.scene.materials[mesh.material as usize], triangle, u, v)
     }
 
-    /// Whether a ray with this `seed` sees the point given by barycentrics as in [`Hit`].
+    /// Whether a ray with this `seed` sees the point given by barycentrics as in [`Hit`]. It sees all of a shape, or
+    /// nothing of it.
     #[must_use]
     pub fn accepts(&self, instance: u32, triangle: u32, u: f32, v: f32, seed: u32) -> bool {
-        let mesh = self.mesh(instance);
-        let material = &self.scene.materials[mesh.material as usize];
-        match material.alpha_mode {
+        let material = match self.scene.shape_instance(instance) {
+            Some(shape) => shape.material,
+            None => self.mesh(instance).material,
+        };
+        match self.scene.materials[material as usize].alpha_mode {
             AlphaMode::Opaque => true,
-            AlphaMode::Mask(cutoff) => self.alpha_of(mesh, material, triangle, u, v) >= cutoff,
+            AlphaMode::Mask(cutoff) => self.alpha(instance, triangle, u, v) >= cutoff,
             AlphaMode::Blend => {
-                self.alpha_of(mesh, material, triangle, u, v) > alpha_threshold(seed, instance, triangle)
+                self.alpha(instance, triangle, u, v) > alpha_threshold(seed, instance, triangle)
             }
         }
     }
 
-    /// The surface at `hit`, its textures averaged over a footprint of `width` scene units; 0 reads them finest.
+    /// The surface at the `hit` of `ray`, its textures averaged over a footprint of `width` scene units; 0 reads them
+    /// finest.
     #[must_use]
-    pub fn surface_at(&self, hit: &Hit, width: f32) -> SurfacePoint {
+    pub fn surface_at(&self, ray: &Ray, hit: &Hit, width: f32) -> SurfacePoint {
+        if let Some(instance) = self.scene.shape_instance(hit.instance) {
+            let point = self.shape_point(instance, ray, hit);
+            let material = &self.scene.materials[instance.material as usize];
+            return SurfacePoint {
+                position: point.position,
+                geometric_normal: point.normal,
+                reach: point.reach,
+                smooth_normal: point.normal,
+                shading_normal: point.normal,
+                albedo: base_color(material, || point.object_position),
+                emission: material.emission,
+                material: instance.material,
+                unlit: material.unlit,
+            };
+        }
         let at = At::new(self, hit, width);
         let smooth_normal = at.smooth_normal();
         SurfacePoint {
@@ -167,7 +196,14 @@ impl Surfaces {
 
     /// The part of [`surface_at`](Self::surface_at) that bounced light needs, for about half its cost.
     #[must_use]
-    pub fn diffuse_at(&self, hit: &Hit, width: f32) -> DiffusePoint {
+    pub fn diffuse_at(&self, ray: &Ray, hit: &Hit, width: f32) -> DiffusePoint {
+        if let Some(instance) = self.scene.shape_instance(hit.instance) {
+            let ShapePoint { position, object_position, normal, reach } =
+                self.shape_point(instance, ray, hit);
+            let material = &self.scene.materials[instance.material as usize];
+            let albedo = base_color(material, || object_position);
+            return DiffusePoint { position, geometric_normal: normal, reach, albedo };
+        }
         let at = At::new(self, hit, width);
         DiffusePoint {
             position: at.position(),
@@ -175,6 +211,11 @@ impl Surfaces {
             reach: at.reach(),
             albedo: at.albedo(),
         }
+    }
+
+    fn shape_point(&self, instance: &ShapeInstance, ray: &Ray, hit: &Hit) -> ShapePoint {
+        let frame = &self.shape_frames[hit.instance as usize - self.scene.instances.len()];
+        frame.point(instance, &self.scene.shapes[instance.shape as usize], ray, hit)
     }
 
     fn mesh(&self, instance: u32) -> &Mesh {
@@ -316,7 +357,10 @@ impl<'s> At<'s> {
     }
 
     fn albedo(&self) -> Vec3 {
-        let mut color = self.material.base_color.truncate();
+        let mut color = base_color(self.material, || {
+            let [a, b, c] = self.corners.map(|i| self.mesh.positions[i as usize]);
+            a + (b - a) * self.weights[1] + (c - a) * self.weights[2]
+        });
         if let Some(texture) = &self.material.base_color_texture {
             color *= self.read(texture).truncate();
         }
@@ -344,6 +388,15 @@ impl<'s> At<'s> {
         let read = self.scene.textures[texture.texture as usize];
         let image = &self.scene.images[read.image as usize];
         read.sampler.sample(image, weigh(uvs, self.weights), self.relative_width * uv_area.sqrt())
+    }
+}
+
+/// The base colour, or that of the checker at `object_position`.
+fn base_color(material: &Material, object_position: impl FnOnce() -> Vec3) -> Vec3 {
+    let base = material.base_color.truncate();
+    match &material.checker {
+        Some(checker) if material.kind() == MaterialKind::Checker => checker.at(base, object_position()),
+        _ => base,
     }
 }
 
@@ -414,7 +467,7 @@ mod tests {
     fn surfaces(mesh: Mesh, material: Material, images: Vec<Image>, placement: Affine3A) -> Surfaces {
         let sampler = Sampler { wrap: [Wrap::Clamp; 2], ..Sampler::default() };
         let textures = (0..images.len() as u32).map(|image| Texture { image, sampler }).collect();
-        let instances = vec![Instance { mesh: 0, world_from_object: placement }];
+        let instances = vec![Instance { mesh: 0, world_from_object: placement, ..Instance::default() }];
         let materials = vec![material];
         Surfaces::new(Arc::new(Scene {
             meshes: vec![mesh],
@@ -426,6 +479,8 @@ mod tests {
         }))
     }
 
+    /// Surfaces of triangles do not depend on the ray.
+    const RAY: Ray = Ray { origin: Vec3::ZERO, t_max: 1.0, direction: Vec3::NEG_Z, seed: 0 };
     const HIT: Hit = Hit { t: 1.0, u: 0.25, v: 0.5, instance: 0, triangle: 0 };
 
     fn texture() -> Option<TextureRef> {
@@ -440,8 +495,8 @@ mod tests {
     #[test]
     fn position_and_normals_follow_the_placement() {
         let mesh = Mesh { normals: vec![Vec3::new(0.6, 0.0, 0.8); 3], ..mesh() };
-        let plain =
-            surfaces(mesh.clone(), Material::default(), vec![], Affine3A::IDENTITY).surface_at(&HIT, 0.0);
+        let plain = surfaces(mesh.clone(), Material::default(), vec![], Affine3A::IDENTITY)
+            .surface_at(&RAY, &HIT, 0.0);
         assert_near(plain.position, Vec3::new(0.25, 0.5, 0.0));
         assert_near(plain.geometric_normal, Vec3::Z);
         assert_near(plain.smooth_normal, Vec3::new(0.6, 0.0, 0.8));
@@ -449,12 +504,12 @@ mod tests {
 
         // Normals of a surface stretched along x lean away from x.
         let stretch = Affine3A::from_scale(Vec3::new(2.0, 1.0, 1.0));
-        let point = surfaces(mesh.clone(), Material::default(), vec![], stretch).surface_at(&HIT, 0.0);
+        let point = surfaces(mesh.clone(), Material::default(), vec![], stretch).surface_at(&RAY, &HIT, 0.0);
         assert_near(point.smooth_normal, Vec3::new(0.3, 0.0, 0.8).normalize());
 
         // A mirror keeps the front in front.
         let mirror = Affine3A::from_scale(Vec3::new(-1.0, 1.0, 1.0));
-        let point = surfaces(mesh, Material::default(), vec![], mirror).surface_at(&HIT, 0.0);
+        let point = surfaces(mesh, Material::default(), vec![], mirror).surface_at(&RAY, &HIT, 0.0);
         assert_near(point.position, Vec3::new(-0.25, 0.5, 0.0));
         assert_near(point.geometric_normal, Vec3::Z);
         assert_near(point.smooth_normal, Vec3::new(-0.6, 0.0, 0.8));
@@ -465,7 +520,7 @@ mod tests {
         let mesh = Mesh { normals: vec![Vec3::Z; 3], ..mesh() };
         for scale in [1e-12, 1e-6, 1e6, 1e12] {
             let m = Affine3A::from_scale(Vec3::splat(scale));
-            let point = surfaces(mesh.clone(), Material::default(), vec![], m).surface_at(&HIT, 0.0);
+            let point = surfaces(mesh.clone(), Material::default(), vec![], m).surface_at(&RAY, &HIT, 0.0);
             assert_near(point.geometric_normal, Vec3::Z);
             assert_near(point.smooth_normal, Vec3::Z);
         }
@@ -474,7 +529,8 @@ mod tests {
     #[test]
     fn normals_turn_towards_the_viewer() {
         let mesh = Mesh { normals: vec![Vec3::new(0.0, 0.6, 0.8); 3], ..mesh() };
-        let point = surfaces(mesh, Material::default(), vec![], Affine3A::IDENTITY).surface_at(&HIT, 0.0);
+        let point =
+            surfaces(mesh, Material::default(), vec![], Affine3A::IDENTITY).surface_at(&RAY, &HIT, 0.0);
         assert_eq!(point.facing(Vec3::NEG_Z), point);
         let behind = point.facing(Vec3::Z);
         assert_eq!(behind.geometric_normal, -point.geometric_normal);
@@ -492,7 +548,7 @@ mod tests {
             Vec3::new(-1.0, 5.0, 0.0),
         );
         for (placement, reach) in [(Affine3A::IDENTITY, 1.0), (moved, 7.0)] {
-            let point = surfaces(mesh(), Material::default(), vec![], placement).surface_at(&HIT, 0.0);
+            let point = surfaces(mesh(), Material::default(), vec![], placement).surface_at(&RAY, &HIT, 0.0);
             assert_eq!(point.reach, reach);
         }
     }
@@ -501,7 +557,8 @@ mod tests {
     fn degenerate_triangles_have_normals() {
         let mut mesh = mesh();
         mesh.positions[2] = Vec3::X;
-        let point = surfaces(mesh, Material::default(), vec![], Affine3A::IDENTITY).surface_at(&HIT, 1.0);
+        let point =
+            surfaces(mesh, Material::default(), vec![], Affine3A::IDENTITY).surface_at(&RAY, &HIT, 1.0);
         assert_eq!((point.geometric_normal, point.smooth_normal), (Vec3::Y, Vec3::Y));
     }
 
@@ -510,7 +567,7 @@ mod tests {
         // Red 0.2, green 0.4, blue up.
         let image = Image::new(String::new(), 1, 1, vec![[153, 178, 242, 255]], false);
         let material = Material { normal_texture: texture(), ..Material::default() };
-        let point = surfaces(mesh, material, vec![image], placement).surface_at(&HIT, 0.0);
+        let point = surfaces(mesh, material, vec![image], placement).surface_at(&RAY, &HIT, 0.0);
         let error = (point.shading_normal - expected).abs().max_element();
         assert!(error < 5e-3, "{} is not {expected}", point.shading_normal);
     }
@@ -547,14 +604,14 @@ mod tests {
         let mesh = Mesh { colors: vec![Vec4::new(0.5, 1.0, 0.25, 1.0); 3], ..mesh() };
         let surfaces = surfaces(mesh, material, vec![image], Affine3A::from_scale(Vec3::splat(8.0)));
         let hit = Hit { u: 0.125, v: 0.2, ..HIT }; // centre of the first texel
-        let fine = surfaces.diffuse_at(&hit, 0.0);
+        let fine = surfaces.diffuse_at(&RAY, &hit, 0.0);
         assert_near(fine.albedo, Vec3::new(0.25, 0.0, 0.0));
-        assert_near(surfaces.surface_at(&hit, 0.0).emission, Vec3::X);
+        assert_near(surfaces.surface_at(&RAY, &hit, 0.0).emission, Vec3::X);
         // The triangle's texture spans 8 units: a footprint of 8 averages all of it.
-        let coarse = surfaces.surface_at(&hit, 8.0);
+        let coarse = surfaces.surface_at(&RAY, &hit, 8.0);
         let error = (coarse.emission - Vec3::new(0.5, 0.0, 0.5)).abs().max_element();
         assert!(error < 5e-3, "{}", coarse.emission);
-        assert_eq!(coarse.albedo, surfaces.diffuse_at(&hit, 8.0).albedo);
+        assert_eq!(coarse.albedo, surfaces.diffuse_at(&RAY, &hit, 8.0).albedo);
     }
 
     #[test]

@@ -176,7 +176,7 @@ impl Job<'_> {
     fn surface(&self, ray: &Ray, hit: &Hit) -> (GBufferPixel, Guide) {
         let camera = &self.view.camera;
         let footprint_there = camera.footprint(camera.depth(ray.origin + hit.t * ray.direction));
-        let point = self.world.surfaces().surface_at(hit, footprint_there).facing(ray.direction);
+        let point = self.world.surfaces().surface_at(ray, hit, footprint_there).facing(ray.direction);
         let depth = camera.depth(point.position);
         let shading_normal = match self.settings.normals {
             Normals::Shading => point.shading_normal,

@@ -48,7 +48,7 @@ impl Trace for CpuWorld {
 
 impl World for CpuWorld {
     fn diffuse_at(&self, ray: &Ray, hit: &Hit, width: f32) -> Diffuse {
-        let point = self.surfaces.diffuse_at(hit, width).facing(ray.direction);
+        let point = self.surfaces.diffuse_at(ray, hit, width).facing(ray.direction);
         let DiffusePoint { position, geometric_normal, reach, albedo } = point;
         Diffuse { position, geometric_normal, reach, albedo }
     }

@@ -38,7 +38,7 @@ impl Random {
 /// Scene of meshes with one instance each, untransformed.
 pub fn scene(meshes: Vec<Mesh>) -> Scene {
     let instances = (0..meshes.len() as u32)
-        .map(|mesh| Instance { mesh, world_from_object: Affine3A::IDENTITY })
+        .map(|mesh| Instance { mesh, world_from_object: Affine3A::IDENTITY, ..Instance::default() })
         .collect();
     Scene { meshes, instances, materials: vec![ambray_scene::Material::default()], ..Scene::default() }
 }

@@ -53,7 +53,11 @@ impl Builder {
 
     /// Places a mesh.
     pub(super) fn place(&mut self, mesh: MeshId, pose: &Pose) {
-        self.scene.instances.push(Instance { mesh: mesh.0, world_from_object: pose.affine() });
+        self.scene.instances.push(Instance {
+            mesh: mesh.0,
+            world_from_object: pose.affine(),
+            ..Instance::default()
+        });
     }
 
     /// Adds a smooth mesh that is there once, as it stands.

@@ -7,8 +7,9 @@ use glam::{Affine3A, DAffine3, DQuat, DVec3, Vec3};
 
 use crate::error::{Fault, Outcome};
 use crate::repair::repair;
+use crate::scene::box_corners;
 use crate::warnings::Warnings;
-use crate::{Instance, Material, Mesh, Scene, limits, tangents};
+use crate::{Instance, Material, Mesh, Motion, Scene, limits, tangents};
 
 use super::accessor::Accept;
 use super::document::Document;
@@ -192,7 +193,11 @@ impl Assembly<'_, '_> {
         let before = self.scene.instances.len();
         let finite = |m: &&Affine3A| corners.iter().all(|&corner| m.transform_point3(corner).is_finite());
         let placed = placements.iter().filter(finite);
-        self.scene.instances.extend(placed.map(|&world_from_object| Instance { mesh, world_from_object }));
+        self.scene.instances.extend(placed.map(|&world_from_object| Instance {
+            mesh,
+            world_from_object,
+            motion: Motion::Static,
+        }));
         let dropped = count - (self.scene.instances.len() - before) as u64;
         self.warnings.tally("instances beyond the range of numbers are dropped", dropped);
         Ok(())
@@ -313,9 +318,5 @@ fn instance_transforms(
 fn corners(mesh: &Mesh) -> Option<[Vec3; 8]> {
     let mut points = mesh.triangles.iter().flatten().map(|&i| mesh.positions[i as usize]);
     let first = points.next()?;
-    let (lo, hi) = points.fold((first, first), |(lo, hi), p| (lo.min(p), hi.max(p)));
-    let pick = |i: usize, bit: usize, lo: f32, hi: f32| if i >> bit & 1 == 0 { lo } else { hi };
-    Some(std::array::from_fn(|i| {
-        Vec3::new(pick(i, 0, lo.x, hi.x), pick(i, 1, lo.y, hi.y), pick(i, 2, lo.z, hi.z))
-    }))
+    Some(box_corners(points.fold((first, first), |(lo, hi), p| (lo.min(p), hi.max(p)))))
 }

@@ -75,6 +75,7 @@ fn read_material(
         alpha_mode,
         double_sided: json.double_sided,
         unlit: json.extensions.unlit.is_some(),
+        checker: None,
     })
 }
 

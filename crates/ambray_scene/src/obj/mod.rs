@@ -51,7 +51,11 @@ pub(crate) fn load(bytes: &[u8], folder: &mut Folder, warnings: &mut Warnings) -
         if scene.materials[mesh.material as usize].normal_texture.is_some() {
             tangents::generate(&mut mesh, 0);
         }
-        let instance = Instance { mesh: scene.meshes.len() as u32, world_from_object: Affine3A::IDENTITY };
+        let instance = Instance {
+            mesh: scene.meshes.len() as u32,
+            world_from_object: Affine3A::IDENTITY,
+            ..Instance::default()
+        };
         scene.instances.push(instance);
         scene.meshes.push(mesh);
     }
