@@ -1,0 +1,380 @@
+//! Building of bottom-level structures in batches.
+
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::input::{Input, Primitives, ShapeBox};
+use super::structure::{Scratch, Structure};
+use crate::commands::Work;
+use crate::error::{Result, VulkanError};
+use crate::{Buffer, Context};
+
+/// How a structure is to be built.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Manner {
+    pub(super) opaque: bool,
+    /// Built fast and updatable, else for fast tracing.
+    pub(super) deforms: bool,
+}
+
+/// Builds structures, several at a time.
+pub(super) struct Builder<'c> {
+    context: &'c Arc<Context>,
+    /// Whether what does not deform is copied to the size it needs.
+    compact: bool,
+    /// Scratch memory and input of a batch at most, bytes each, unless a single structure needs more.
+    batch: u64,
+    pending: Vec<Pending>,
+    /// Scratch and input of what is pending, bytes.
+    scratch: u64,
+    input: u64,
+    done: Vec<Structure>,
+    pub(super) bytes_before: u64,
+    pub(super) largest_scratch: u64,
+}
+
+/// A structure of the next batch.
+struct Pending {
+    primitives: Primitives,
+    manner: Manner,
+    structure: Structure,
+    scratch: u64,
+}
+
+impl Manner {
+    fn flags(self, compact: bool) -> vk::BuildAccelerationStructureFlagsKHR {
+        use vk::BuildAccelerationStructureFlagsKHR as Flags;
+        match (self.deforms, compact) {
+            (true, _) => Flags::PREFER_FAST_BUILD | Flags::ALLOW_UPDATE,
+            (false, true) => Flags::PREFER_FAST_TRACE | Flags::ALLOW_COMPACTION,
+            (false, false) => Flags::PREFER_FAST_TRACE,
+        }
+    }
+}
+
+impl<'c> Builder<'c> {
+    pub(super) const fn new(context: &'c Arc<Context>, compact: bool, batch: u64) -> Self {
+        Self {
+            context,
+            compact,
+            batch,
+            pending: Vec::new(),
+            scratch: 0,
+            input: 0,
+            done: Vec::new(),
+            bytes_before: 0,
+            largest_scratch: 0,
+        }
+    }
+
+    /// Adds a structure with the primitives of `input`, which must have some; it is built now or later.
+    pub(super) fn push(&mut self, input: Input, manner: Manner) -> Result<()> {
+        let primitives = input.primitives;
+        let (count, vertices) = primitives.counts();
+        let limits = self.context.limits();
+        if count > limits.primitives.min(u64::from(u32::MAX)) || vertices > u64::from(u32::MAX) {
+            return Err(VulkanError::Limit {
+                what: "primitives in one acceleration structure".into(),
+                asked: count.max(vertices),
+                limit: limits.primitives,
+            });
+        }
+        let sizes = self.sizes(&primitives, manner);
+        let scratch = sizes.build_scratch_size.next_multiple_of(u64::from(limits.scratch_alignment));
+        let is_full = self.scratch + scratch > self.batch || self.input + primitives.bytes() > self.batch;
+        if is_full && !self.pending.is_empty() {
+            self.flush()?;
+        }
+        let structure = Structure::new(
+            self.context,
+            "bottom-level structure",
+            vk::AccelerationStructureTypeKHR::BOTTOM_LEVEL,
+            sizes.acceleration_structure_size,
+        )?;
+        self.scratch += scratch;
+        self.input += primitives.bytes();
+        self.pending.push(Pending { primitives, manner, structure, scratch });
+        Ok(())
+    }
+
+    /// Builds what is left; all structures in the order in which they were added.
+    pub(super) fn finish(&mut self) -> Result<Vec<Structure>> {
+        self.flush()?;
+        Ok(std::mem::take(&mut self.done))
+    }
+
+    fn sizes(
+        &self,
+        primitives: &Primitives,
+        manner: Manner,
+    ) -> vk::AccelerationStructureBuildSizesInfoKHR<'static> {
+        let geometry = [primitives.geometry(0, 0, manner.opaque)];
+        let info = build_info(&geometry, manner.flags(self.compact));
+        let mut sizes = vk::AccelerationStructureBuildSizesInfoKHR::default();
+        // SAFETY: sizes follow counts and formats; addresses are not read.
+        unsafe {
+            self.context.acceleration.get_acceleration_structure_build_sizes(
+                vk::AccelerationStructureBuildTypeKHR::DEVICE,
+                &info,
+                &[primitives.counts().0 as u32],
+                &mut sizes,
+            );
+        }
+        sizes
+    }
+
+    /// Builds what is pending, and waits for it; then its input is freed.
+    fn flush(&mut self) -> Result<()> {
+        let batch = std::mem::take(&mut self.pending);
+        if batch.is_empty() {
+            return Ok(());
+        }
+        let inputs = Uploaded::new(self.context, &batch)?;
+        let scratch = Scratch::new(self.context, std::mem::take(&mut self.scratch))?;
+        self.input = 0;
+        self.largest_scratch = self.largest_scratch.max(scratch.size());
+        self.bytes_before += batch.iter().map(|p| p.structure.size()).sum::<u64>();
+
+        let geometries: Vec<_> = batch
+            .iter()
+            .zip(&inputs.offsets)
+            .map(|(p, &(first, second))| {
+                [p.primitives.geometry(
+                    inputs.first.address() + first,
+                    inputs.second.address() + second,
+                    p.manner.opaque,
+                )]
+            })
+            .collect();
+        let mut at = scratch.address();
+        let infos: Vec<_> = (batch.iter().zip(&geometries))
+            .map(|(p, geometry)| {
+                let scratch_data = vk::DeviceOrHostAddressKHR { device_address: at };
+                at += p.scratch;
+                build_info(geometry, p.manner.flags(self.compact))
+                    .dst_acceleration_structure(p.structure.handle())
+                    .scratch_data(scratch_data)
+            })
+            .collect();
+        let range = |p: &Pending| {
+            [vk::AccelerationStructureBuildRangeInfoKHR::default()
+                .primitive_count(p.primitives.counts().0 as u32)]
+        };
+        let ranges: Vec<_> = batch.iter().map(range).collect();
+        let ranges: Vec<&[_]> = ranges.iter().map(|r| &r[..]).collect();
+        let compactable: Vec<_> = batch
+            .iter()
+            .filter(|p| self.compact && !p.manner.deforms)
+            .map(|p| p.structure.handle())
+            .collect();
+        let queries = SizeQueries::new(self.context, compactable.len() as u32)?;
+        self.context.run(|recorder| {
+            // SAFETY: addresses are of buffers that live until this has run, with ranges inside them; scratch ranges are
+            // aligned and disjoint; the structures are as large as the driver asked for, and new.
+            unsafe {
+                let commands = &recorder.context().acceleration;
+                commands.cmd_build_acceleration_structures(recorder.raw(), &infos, &ranges);
+            }
+            recorder.barrier(Work::BuildStructure, Work::BuildStructure);
+            queries.record(recorder.raw(), &compactable);
+            recorder.barrier(Work::BuildStructure, Work::Everything);
+            Ok(())
+        })?;
+        drop((inputs, scratch));
+        let mut sizes = queries.read()?.into_iter();
+        let mut compacted = Vec::new();
+        let mut copies = Vec::new();
+        for pending in batch {
+            if !self.compact || pending.manner.deforms {
+                compacted.push(pending.structure);
+                continue;
+            }
+            let size = sizes.next().unwrap_or(pending.structure.size());
+            let small = Structure::new(
+                self.context,
+                "bottom-level structure",
+                vk::AccelerationStructureTypeKHR::BOTTOM_LEVEL,
+                size,
+            )?;
+            copies.push((pending.structure, small.handle()));
+            compacted.push(small);
+        }
+        self.compact(&copies)?;
+        self.done.append(&mut compacted);
+        Ok(())
+    }
+
+    /// Copies structures to smaller ones.
+    fn compact(&self, copies: &[(Structure, vk::AccelerationStructureKHR)]) -> Result<()> {
+        if copies.is_empty() {
+            return Ok(());
+        }
+        self.context.run(|recorder| {
+            for (from, to) in copies {
+                let info = vk::CopyAccelerationStructureInfoKHR::default()
+                    .src(from.handle())
+                    .dst(*to)
+                    .mode(vk::CopyAccelerationStructureModeKHR::COMPACT);
+                // SAFETY: both live until this has run, the source was built with the flag for it, and the target has the
+                // size that was asked from the source.
+                unsafe {
+                    let commands = &recorder.context().acceleration;
+                    commands.cmd_copy_acceleration_structure(recorder.raw(), &info);
+                }
+            }
+            recorder.barrier(Work::BuildStructure, Work::Everything);
+            Ok(())
+        })
+    }
+}
+
+impl Primitives {
+    /// Number of primitives, and of vertices.
+    fn counts(&self) -> (u64, u64) {
+        match self {
+            Self::Triangles { positions, triangles } => (triangles.len() as u64, positions.len() as u64),
+            Self::Boxes(boxes) => (boxes.len() as u64, 0),
+        }
+    }
+
+    fn bytes(&self) -> u64 {
+        match self {
+            Self::Triangles { positions, triangles } => 12 * (positions.len() + triangles.len()) as u64,
+            Self::Boxes(boxes) => size_of_val(&boxes[..]) as u64,
+        }
+    }
+
+    /// The geometry with its data at `first` (vertices or boxes) and `second` (indices).
+    fn geometry(
+        &self,
+        first: vk::DeviceAddress,
+        second: vk::DeviceAddress,
+        opaque: bool,
+    ) -> vk::AccelerationStructureGeometryKHR<'static> {
+        let at = |device_address| vk::DeviceOrHostAddressConstKHR { device_address };
+        let (kind, data) = match self {
+            Self::Triangles { positions, .. } => {
+                let triangles = vk::AccelerationStructureGeometryTrianglesDataKHR::default()
+                    .vertex_format(vk::Format::R32G32B32_SFLOAT)
+                    .vertex_data(at(first))
+                    .vertex_stride(12)
+                    .max_vertex(positions.len().saturating_sub(1) as u32)
+                    .index_type(vk::IndexType::UINT32)
+                    .index_data(at(second));
+                (vk::GeometryTypeKHR::TRIANGLES, vk::AccelerationStructureGeometryDataKHR { triangles })
+            }
+            Self::Boxes(_) => {
+                let aabbs = vk::AccelerationStructureGeometryAabbsDataKHR::default()
+                    .data(at(first))
+                    .stride(size_of::<ShapeBox>() as u64);
+                (vk::GeometryTypeKHR::AABBS, vk::AccelerationStructureGeometryDataKHR { aabbs })
+            }
+        };
+        let flags = if opaque { vk::GeometryFlagsKHR::OPAQUE } else { vk::GeometryFlagsKHR::empty() };
+        vk::AccelerationStructureGeometryKHR::default().geometry_type(kind).geometry(data).flags(flags)
+    }
+}
+
+fn build_info<'a>(
+    geometry: &'a [vk::AccelerationStructureGeometryKHR<'a>],
+    flags: vk::BuildAccelerationStructureFlagsKHR,
+) -> vk::AccelerationStructureBuildGeometryInfoKHR<'a> {
+    vk::AccelerationStructureBuildGeometryInfoKHR::default()
+        .ty(vk::AccelerationStructureTypeKHR::BOTTOM_LEVEL)
+        .flags(flags)
+        .mode(vk::BuildAccelerationStructureModeKHR::BUILD)
+        .geometries(geometry)
+}
+
+/// The input of a batch on the device.
+struct Uploaded {
+    /// Vertices and boxes.
+    first: Buffer,
+    /// Vertex numbers.
+    second: Buffer,
+    /// Of each structure, bytes.
+    offsets: Vec<(u64, u64)>,
+}
+
+impl Uploaded {
+    fn new(context: &Arc<Context>, batch: &[Pending]) -> Result<Self> {
+        let (mut first, mut second, mut offsets) = (Vec::<u8>::new(), Vec::<u8>::new(), Vec::new());
+        for pending in batch {
+            // Boxes must begin at multiples of 8.
+            first.resize(first.len().next_multiple_of(8), 0);
+            offsets.push((first.len() as u64, second.len() as u64));
+            match &pending.primitives {
+                Primitives::Triangles { positions, triangles } => {
+                    first.extend_from_slice(bytemuck::cast_slice(positions));
+                    second.extend_from_slice(bytemuck::cast_slice(triangles));
+                }
+                Primitives::Boxes(boxes) => first.extend_from_slice(bytemuck::cast_slice(boxes)),
+            }
+        }
+        let usage = vk::BufferUsageFlags::ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_KHR
+            | vk::BufferUsageFlags::SHADER_DEVICE_ADDRESS;
+        Ok(Self {
+            first: context.upload("vertices and boxes of builds", usage, &first)?,
+            second: context.upload("vertex numbers of builds", usage, &second)?,
+            offsets,
+        })
+    }
+}
+
+/// Asks structures for the size they need.
+struct SizeQueries<'c> {
+    context: &'c Context,
+    pool: vk::QueryPool,
+    count: u32,
+}
+
+impl<'c> SizeQueries<'c> {
+    const KIND: vk::QueryType = vk::QueryType::ACCELERATION_STRUCTURE_COMPACTED_SIZE_KHR;
+
+    fn new(context: &'c Context, count: u32) -> Result<Self> {
+        let info = vk::QueryPoolCreateInfo::default().query_type(Self::KIND).query_count(count.max(1));
+        // SAFETY: the device is alive; the pool is destroyed when dropped.
+        let pool = unsafe { context.device.create_query_pool(&info, None) }
+            .map_err(VulkanError::of("vkCreateQueryPool"))?;
+        Ok(Self { context, pool, count })
+    }
+
+    fn record(&self, buffer: vk::CommandBuffer, structures: &[vk::AccelerationStructureKHR]) {
+        assert_eq!(structures.len(), self.count as usize);
+        if self.count == 0 {
+            return;
+        }
+        // SAFETY: the buffer is being recorded, the pool has a query for each structure, and all are built with the flag
+        // for it, with a barrier behind.
+        unsafe {
+            self.context.device.cmd_reset_query_pool(buffer, self.pool, 0, self.count);
+            self.context.acceleration.cmd_write_acceleration_structures_properties(
+                buffer,
+                structures,
+                Self::KIND,
+                self.pool,
+                0,
+            );
+        }
+    }
+
+    /// The answers, once the commands have run.
+    fn read(&self) -> Result<Vec<u64>> {
+        let mut sizes = vec![0_u64; self.count as usize];
+        if self.count > 0 {
+            let flags = vk::QueryResultFlags::TYPE_64 | vk::QueryResultFlags::WAIT;
+            // SAFETY: the queries were written by commands that have run.
+            unsafe { self.context.device.get_query_pool_results(self.pool, 0, &mut sizes, flags) }
+                .map_err(VulkanError::of("vkGetQueryPoolResults"))?;
+        }
+        Ok(sizes)
+    }
+}
+
+impl Drop for SizeQueries<'_> {
+    fn drop(&mut self) {
+        // SAFETY: commands that used the pool have run: recording and waiting is one call.
+        unsafe { self.context.device.destroy_query_pool(self.pool, None) };
+    }
+}

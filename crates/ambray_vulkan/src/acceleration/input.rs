@@ -1,0 +1,100 @@
+//! What a bottom-level structure is built from.
+
+use ambray_scene::Scene;
+use bytemuck::{Pod, Zeroable};
+use glam::{Affine3A, Vec3};
+
+use super::GeometryKind;
+use super::bounds::Bounds;
+use super::geometry::{self, Placed};
+use super::plan::{Content, Group};
+use super::sort::spatial_order;
+use crate::layout::NONE;
+
+/// A box as Vulkan reads it: `VkAabbPositionsKHR`.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct ShapeBox {
+    lo: Vec3,
+    hi: Vec3,
+}
+
+/// The primitives of a structure in spatial order, and where each comes from.
+#[derive(Debug)]
+pub(super) struct Input {
+    pub(super) primitives: Primitives,
+    /// Instance and triangle of each primitive; [`NONE`] where each placement of the structure is an instance of its own.
+    pub(super) refs: Vec<[u32; 2]>,
+    /// In the space of the structure.
+    pub(super) bounds: Bounds,
+    /// Triangles that rays cannot hit.
+    pub(super) dropped: u64,
+}
+
+#[derive(Debug)]
+pub(super) enum Primitives {
+    Triangles { positions: Vec<Vec3>, triangles: Vec<[u32; 3]> },
+    Boxes(Vec<ShapeBox>),
+}
+
+impl Input {
+    /// Gathers the content of `group`.
+    pub(super) fn of(scene: &Scene, group: &Group) -> Self {
+        let members = match &group.content {
+            Content::World(members) => members,
+            // All users are the same in their own space.
+            Content::Object(users) => &users[..1],
+        };
+        let is_world = matches!(group.content, Content::World(_));
+        match group.kind {
+            GeometryKind::Shape => Self::boxes(scene, members, is_world),
+            GeometryKind::Opaque | GeometryKind::Masked => Self::triangles(scene, members, is_world),
+        }
+    }
+
+    fn triangles(scene: &Scene, members: &[u32], is_world: bool) -> Self {
+        let (mut positions, mut triangles, mut refs) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut centres, mut bounds, mut dropped) = (Vec::new(), Bounds::EMPTY, 0);
+        for &member in members {
+            let instance = &scene.instances[member as usize];
+            let mesh = &scene.meshes[instance.mesh as usize];
+            let (transform, name) =
+                if is_world { (instance.world_from_object, member) } else { (Affine3A::IDENTITY, NONE) };
+            let placed = Placed::new(mesh, &transform);
+            let first = positions.len() as u32;
+            let before = triangles.len();
+            for (triangle, vertices, corners) in placed.hittable() {
+                let around = Bounds::from_iter(corners);
+                bounds = bounds.union(around);
+                centres.push(around.centre());
+                triangles.push(vertices.map(|i| first + i));
+                refs.push([name, triangle]);
+            }
+            dropped += (mesh.triangles.len() - (triangles.len() - before)) as u64;
+            positions.extend(placed.positions);
+        }
+        let order = spatial_order(&centres);
+        let triangles = order.iter().map(|&i| triangles[i as usize]).collect();
+        let refs = order.iter().map(|&i| refs[i as usize]).collect();
+        Self { primitives: Primitives::Triangles { positions, triangles }, refs, bounds, dropped }
+    }
+
+    fn boxes(scene: &Scene, members: &[u32], is_world: bool) -> Self {
+        let bounds_of = |member: u32| {
+            let instance = &scene.shape_instances[member as usize - scene.instances.len()];
+            let shape = &scene.shapes[instance.shape as usize];
+            if is_world {
+                geometry::shape_bounds(shape, instance).expect("only shapes with a place are planned")
+            } else {
+                geometry::shape_box(shape)
+            }
+        };
+        let all: Vec<Bounds> = members.iter().map(|&m| bounds_of(m)).collect();
+        let order = spatial_order(&all.iter().map(|b| b.centre()).collect::<Vec<_>>());
+        let boxes = order.iter().map(|&i| all[i as usize]).map(|b| ShapeBox { lo: b.lo, hi: b.hi }).collect();
+        let name = |i: u32| if is_world { members[i as usize] } else { NONE };
+        let refs = order.iter().map(|&i| [name(i), 0]).collect();
+        let bounds = all.into_iter().fold(Bounds::EMPTY, Bounds::union);
+        Self { primitives: Primitives::Boxes(boxes), refs, bounds, dropped: 0 }
+    }
+}
