@@ -414,7 +414,8 @@ fn weigh([a, b, c]: [Vec2; 3], weights: [f32; 3]) -> Vec2 {
 
 /// Matrix that turns normals where `m` turns points: the inverse transpose up to a positive factor, defined even where
 /// `m` has no inverse.
-pub(crate) fn normal_matrix(m: Mat3A) -> Mat3A {
+#[must_use]
+pub fn normal_matrix(m: Mat3A) -> Mat3A {
     // Scaled to unit size, since products of tiny or huge entries leave the range of numbers.
     let size = m.x_axis.abs().max(m.y_axis.abs()).max(m.z_axis.abs()).max_element();
     let m = if size > 0.0 { m * (1.0 / size) } else { m };

@@ -54,6 +54,12 @@ impl Default for Sampler {
     }
 }
 
+/// Linear value in `[0, 1]` of each sRGB byte (IEC 61966-2-1): for backends that decode texels themselves.
+#[must_use]
+pub fn srgb_values() -> &'static [f32; 256] {
+    srgb::decoded()
+}
+
 /// What happens outside `[0, 1]`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Wrap {

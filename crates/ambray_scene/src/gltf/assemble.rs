@@ -9,14 +9,16 @@ use crate::error::{Fault, Outcome};
 use crate::repair::repair;
 use crate::scene::box_corners;
 use crate::warnings::Warnings;
-use crate::{Instance, Material, Mesh, Motion, Scene, limits, tangents};
+use crate::{Instance, Material, Mesh, Motion, Scene, ShapeInstance, limits, tangents};
 
 use super::accessor::Accept;
 use super::document::Document;
-use super::json::{Index, Node, Root};
+use super::json::{ImplicitSurface, Index, Node, Root};
+use super::motion::Moved;
 use super::nodes::placement;
 use super::pose::{Deformable, joint_matrices};
 use super::primitives::read_primitive;
+use super::shapes::read_shape;
 use super::views;
 
 /// Adds what the `visible` nodes show to `scene`, which has its materials already.
@@ -24,15 +26,18 @@ pub(super) fn assemble(
     doc: &Document<'_>,
     visible: &[Index],
     world: &[DAffine3],
+    moved: &Moved,
     scene: &mut Scene,
     warnings: &mut Warnings,
 ) -> Outcome<()> {
     let mut assembly = Assembly {
         doc,
         world,
+        moved,
         scene,
         warnings,
         read: HashMap::new(),
+        shapes: HashMap::new(),
         joints: HashMap::new(),
         corners: Vec::new(),
         triangles: 0,
@@ -43,13 +48,16 @@ pub(super) fn assemble(
         if let Some(mesh) = node.mesh {
             assembly.place_mesh(node, index, mesh)?;
         }
+        if let Some(surface) = &node.extensions.surface {
+            assembly.place_shape(surface, index)?;
+        }
         assembly.place_views(node, index)?;
     }
     Ok(())
 }
 
 /// A primitive that has been read.
-struct Shape {
+struct Part {
     deformable: Deformable,
     /// Scene mesh of the rest shape once it is needed.
     shared: Option<u32>,
@@ -58,10 +66,13 @@ struct Shape {
 struct Assembly<'a, 'd> {
     doc: &'a Document<'d>,
     world: &'a [DAffine3],
+    moved: &'a Moved,
     scene: &'a mut Scene,
     warnings: &'a mut Warnings,
     /// Primitives by glTF mesh.
-    read: HashMap<Index, Vec<Shape>>,
+    read: HashMap<Index, Vec<Part>>,
+    /// Scene shapes by shape of the file.
+    shapes: HashMap<Index, u32>,
     /// Joint matrices by skin.
     joints: HashMap<Index, Rc<[Affine3A]>>,
     /// Corners of the boxes around the scene's meshes; `None` for meshes without triangles.
@@ -74,37 +85,46 @@ struct Assembly<'a, 'd> {
 
 impl Assembly<'_, '_> {
     fn place_mesh(&mut self, node: &Node, index: Index, mesh: Index) -> Outcome<()> {
-        let mut shapes = match self.read.remove(&mesh) {
-            Some(shapes) => shapes,
+        let mut parts = match self.read.remove(&mesh) {
+            Some(parts) => parts,
             None => self.read_mesh(mesh)?,
         };
-        let result = self.place_shapes(node, index, mesh, &mut shapes);
-        self.read.insert(mesh, shapes);
+        let result = self.place_parts(node, index, mesh, &mut parts);
+        self.read.insert(mesh, parts);
         result
     }
 
-    fn place_shapes(&mut self, node: &Node, index: Index, mesh: Index, shapes: &mut [Shape]) -> Outcome<()> {
+    fn place_parts(&mut self, node: &Node, index: Index, mesh: Index, parts: &mut [Part]) -> Outcome<()> {
         let at = format!("nodes[{index}]");
-        let weights = morph_weights(self.doc.root, node, mesh, shapes, &at)?;
+        let weights = morph_weights(self.doc.root, node, mesh, parts, &at)?;
         let joints = match node.skin {
             Some(skin) => Some(self.joints(skin, &format!("{at}.skin"))?),
             None => None,
         };
         let placements = self.placements(node, index)?;
-        for (i, shape) in shapes.iter_mut().enumerate() {
-            if shape.deformable.is_deformed_by(weights, joints.is_some()) {
+        for (i, part) in parts.iter_mut().enumerate() {
+            let has_joints = !part.deformable.influences.is_empty();
+            let motion = self.moved.primitive(
+                self.doc.root,
+                node,
+                index,
+                has_joints,
+                !part.deformable.targets.is_empty(),
+            );
+            if part.deformable.is_deformed_by(weights, joints.is_some()) {
                 let place = format!("meshes[{mesh}].primitives[{i}]");
-                let posed = self.pose(&shape.deformable, weights, joints.as_deref(), &place)?;
+                let posed = self.pose(&part.deformable, weights, joints.as_deref(), &place)?;
                 // Joints place their mesh in the world; the node's own transform does not count (glTF 2.0 §3.7.3.3).
-                let skinned = joints.is_some() && !shape.deformable.influences.is_empty();
+                let skinned = joints.is_some() && has_joints;
                 let mesh = self.add_mesh(posed)?;
-                self.add_instances(mesh, if skinned { &[Affine3A::IDENTITY] } else { &placements }, &at)?;
+                let placements = if skinned { &[Affine3A::IDENTITY][..] } else { &placements };
+                self.add_instances(mesh, placements, motion, &at)?;
             } else {
-                let mesh = match shape.shared {
+                let mesh = match part.shared {
                     Some(mesh) => mesh,
-                    None => self.share(shape)?,
+                    None => self.share(part)?,
                 };
-                self.add_instances(mesh, &placements, &at)?;
+                self.add_instances(mesh, &placements, motion, &at)?;
             }
         }
         Ok(())
@@ -120,18 +140,18 @@ impl Assembly<'_, '_> {
         Ok(joints)
     }
 
-    fn read_mesh(&mut self, mesh: Index) -> Outcome<Vec<Shape>> {
-        let mut shapes = Vec::new();
+    fn read_mesh(&mut self, mesh: Index) -> Outcome<Vec<Part>> {
+        let mut parts = Vec::new();
         for (i, primitive) in self.doc.root.meshes[mesh].primitives.iter().enumerate() {
             if let Some(mut deformable) = read_primitive(self.doc, mesh, i, self.warnings)? {
                 deformable.rest.material = match primitive.material {
                     Some(material) => material as u32, // checked to be below the number of materials
                     None => default_material(self.scene, self.doc.root.materials.len()),
                 };
-                shapes.push(Shape { deformable, shared: None });
+                parts.push(Part { deformable, shared: None });
             }
         }
-        Ok(shapes)
+        Ok(parts)
     }
 
     fn pose(
@@ -154,11 +174,11 @@ impl Assembly<'_, '_> {
     }
 
     /// Adds the rest shape to the scene, for all nodes that show it as it is.
-    fn share(&mut self, shape: &mut Shape) -> Outcome<u32> {
-        let keep = !shape.deformable.targets.is_empty() || !shape.deformable.influences.is_empty();
-        let rest = &mut shape.deformable.rest;
+    fn share(&mut self, part: &mut Part) -> Outcome<u32> {
+        let keep = !part.deformable.targets.is_empty() || !part.deformable.influences.is_empty();
+        let rest = &mut part.deformable.rest;
         let mesh = self.add_mesh(if keep { rest.clone() } else { std::mem::take(rest) })?;
-        shape.shared = Some(mesh);
+        part.shared = Some(mesh);
         Ok(mesh)
     }
 
@@ -177,18 +197,15 @@ impl Assembly<'_, '_> {
         Ok((self.scene.meshes.len() - 1) as u32)
     }
 
-    fn add_instances(&mut self, mesh: u32, placements: &[Affine3A], at: &str) -> Outcome<()> {
-        let shape = &self.scene.meshes[mesh as usize];
+    fn add_instances(&mut self, mesh: u32, placements: &[Affine3A], motion: Motion, at: &str) -> Outcome<()> {
+        let added = &self.scene.meshes[mesh as usize];
         let count = placements.len() as u64;
-        self.triangles = self.triangles.saturating_add(count.saturating_mul(shape.triangles.len() as u64));
+        self.triangles = self.triangles.saturating_add(count.saturating_mul(added.triangles.len() as u64));
         if self.triangles > limits::TRIANGLES {
             let reason = format!("more than {} triangles, instances counted each time", limits::TRIANGLES);
             return Err(Fault::too_large(at, reason));
         }
-        self.placed += count.max(1);
-        if self.placed > limits::INSTANCES {
-            return Err(Fault::too_large(at, format!("more than {} instances", limits::INSTANCES)));
-        }
+        self.count_instances(count.max(1), at)?;
         let Some(corners) = self.corners[mesh as usize] else { return Ok(()) };
         let before = self.scene.instances.len();
         let finite = |m: &&Affine3A| corners.iter().all(|&corner| m.transform_point3(corner).is_finite());
@@ -196,10 +213,50 @@ impl Assembly<'_, '_> {
         self.scene.instances.extend(placed.map(|&world_from_object| Instance {
             mesh,
             world_from_object,
-            motion: Motion::Static,
+            motion,
         }));
         let dropped = count - (self.scene.instances.len() - before) as u64;
         self.warnings.tally("instances beyond the range of numbers are dropped", dropped);
+        Ok(())
+    }
+
+    fn count_instances(&mut self, count: u64, at: &str) -> Outcome<()> {
+        self.placed += count;
+        if self.placed > limits::INSTANCES {
+            return Err(Fault::too_large(at, format!("more than {} instances", limits::INSTANCES)));
+        }
+        Ok(())
+    }
+
+    fn place_shape(&mut self, surface: &ImplicitSurface, index: Index) -> Outcome<()> {
+        self.count_instances(1, &format!("nodes[{index}]"))?;
+        let shape = match self.shapes.get(&surface.shape) {
+            Some(&shape) => shape,
+            None => {
+                self.scene.shapes.push(read_shape(self.doc, surface.shape)?);
+                *self.shapes.entry(surface.shape).or_insert(self.scene.shapes.len() as u32 - 1)
+            }
+        };
+        let material = match surface.material {
+            Some(material) => material as u32, // checked to be below the number of materials
+            None => default_material(self.scene, self.doc.root.materials.len()),
+        };
+        let Material { base_color_texture, normal_texture, emission_texture, .. } =
+            &self.scene.materials[material as usize];
+        let has_textures =
+            [base_color_texture, normal_texture, emission_texture].iter().any(|texture| texture.is_some());
+        self.warnings.tally("shapes show no textures: they have no texture coordinates", has_textures.into());
+        let Some(world_from_object) = placement(self.world[index]) else {
+            self.warnings.tally("instances whose transform is singular or not finite are dropped", 1);
+            return Ok(());
+        };
+        let corners = box_corners(self.scene.shapes[shape as usize].bounds());
+        if !corners.iter().all(|&corner| world_from_object.transform_point3(corner).is_finite()) {
+            self.warnings.tally("instances beyond the range of numbers are dropped", 1);
+            return Ok(());
+        }
+        let motion = self.moved.node(index);
+        self.scene.shape_instances.push(ShapeInstance { shape, material, world_from_object, motion });
         Ok(())
     }
 
@@ -252,14 +309,14 @@ fn morph_weights<'r>(
     root: &'r Root,
     node: &'r Node,
     mesh: Index,
-    shapes: &[Shape],
+    parts: &[Part],
     at: &str,
 ) -> Outcome<&'r [f32]> {
     let own = !node.weights.is_empty();
     let weights = if own { &node.weights } else { &root.meshes[mesh].weights };
     let at = || if own { format!("{at}.weights") } else { format!("meshes[{mesh}].weights") };
-    for shape in shapes {
-        let targets = shape.deformable.targets.len();
+    for part in parts {
+        let targets = part.deformable.targets.len();
         if !weights.is_empty() && weights.len() != targets {
             return Err(Fault::invalid(
                 at(),

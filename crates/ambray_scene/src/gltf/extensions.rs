@@ -7,8 +7,12 @@ use super::json::Root;
 
 /// Extensions that are read in full.
 const READ: &[&str] = &[
+    "AMBRAY_implicit_surface",
+    "AMBRAY_material_checker",
+    "AMBRAY_shape_field",
     "EXT_mesh_gpu_instancing",
     "EXT_texture_webp",
+    "KHR_implicit_shapes",
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_unlit",
@@ -30,6 +34,7 @@ const HARMLESS: &[(&str, &str)] = &[
     ("KHR_materials_transmission", "transmission"),
     ("KHR_materials_variants", "material variants"),
     ("KHR_materials_volume", "volume"),
+    ("KHR_physics_rigid_bodies", "physics, and shapes that only collide are not shown"),
     ("KHR_xmp_json_ld", "metadata"),
 ];
 

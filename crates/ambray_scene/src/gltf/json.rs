@@ -27,7 +27,7 @@ pub(super) struct Root {
     pub(super) samplers: Vec<Sampler>,
     pub(super) cameras: Vec<Camera>,
     pub(super) skins: Vec<Skin>,
-    pub(super) animations: Vec<IgnoredAny>,
+    pub(super) animations: Vec<Animation>,
     pub(super) extensions_used: Vec<String>,
     pub(super) extensions_required: Vec<String>,
     pub(super) extensions: RootExtensions,
@@ -38,6 +38,92 @@ pub(super) struct Root {
 pub(super) struct RootExtensions {
     #[serde(rename = "KHR_lights_punctual")]
     pub(super) lights: Option<Lights>,
+    #[serde(rename = "KHR_implicit_shapes")]
+    pub(super) shapes: Option<Shapes>,
+}
+
+impl Root {
+    /// The shapes of KHR_implicit_shapes.
+    pub(super) fn shapes(&self) -> &[Shape] {
+        self.extensions.shapes.as_ref().map_or(&[], |shapes| &shapes.shapes)
+    }
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Shapes {
+    pub(super) shapes: Vec<Shape>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Shape {
+    #[serde(rename = "type")]
+    pub(super) kind: String,
+    pub(super) sphere: Option<SphereShape>,
+    #[serde(rename = "box")]
+    pub(super) cuboid: Option<BoxShape>,
+    pub(super) capsule: Option<RoundShape>,
+    pub(super) cylinder: Option<RoundShape>,
+    pub(super) extensions: ShapeExtensions,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct ShapeExtensions {
+    #[serde(rename = "AMBRAY_shape_field")]
+    pub(super) field: Option<FieldShape>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct SphereShape {
+    pub(super) radius: Option<f32>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct BoxShape {
+    pub(super) size: Option<[f32; 3]>,
+}
+
+/// Capsule or cylinder.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct RoundShape {
+    pub(super) height: Option<f32>,
+    pub(super) radius_bottom: Option<f32>,
+    pub(super) radius_top: Option<f32>,
+}
+
+/// Signed distances on a grid, x running fastest.
+#[derive(Debug, Deserialize)]
+pub(super) struct FieldShape {
+    /// Samples along each axis.
+    pub(super) samples: [u64; 3],
+    /// Size of the box whose faces the outermost samples lie on.
+    pub(super) size: [f32; 3],
+    pub(super) distances: Index,
+}
+
+/// What an animation moves; keyframes are not read, and what is malformed moves nothing.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Animation {
+    pub(super) channels: Vec<Channel>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Channel {
+    pub(super) target: ChannelTarget,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct ChannelTarget {
+    pub(super) node: Option<Index>,
+    pub(super) path: String,
 }
 
 #[derive(Debug, Deserialize)]
@@ -82,6 +168,15 @@ pub(super) struct NodeExtensions {
     pub(super) light: Option<NodeLight>,
     #[serde(rename = "EXT_mesh_gpu_instancing")]
     pub(super) instancing: Option<Instancing>,
+    #[serde(rename = "AMBRAY_implicit_surface")]
+    pub(super) surface: Option<ImplicitSurface>,
+}
+
+/// A shape that is shown where the node is.
+#[derive(Debug, Deserialize)]
+pub(super) struct ImplicitSurface {
+    pub(super) shape: Index,
+    pub(super) material: Option<Index>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -219,6 +314,15 @@ pub(super) struct MaterialExtensions {
     pub(super) unlit: Option<IgnoredAny>,
     #[serde(rename = "KHR_materials_pbrSpecularGlossiness")]
     pub(super) specular_glossiness: Option<SpecularGlossiness>,
+    #[serde(rename = "AMBRAY_material_checker")]
+    pub(super) checker: Option<Checker>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct Checker {
+    pub(super) color_factor: Option<[f32; 3]>,
+    pub(super) size: Option<f32>,
 }
 
 #[derive(Debug, Default, Deserialize)]

@@ -3,7 +3,7 @@
 use glam::{Affine2, Mat2, Vec2, Vec3, Vec4};
 
 use crate::error::{Fault, Outcome, quoted};
-use crate::{AlphaMode, Material, TextureRef};
+use crate::{AlphaMode, Checker, Material, TextureRef};
 
 use super::json::{self, Root, TextureInfo};
 use super::textures::TextureUses;
@@ -44,14 +44,27 @@ fn read_material(
     let base_color = factor.map_or(Vec4::ONE, Vec4::from);
     let cutoff = json.alpha_cutoff.unwrap_or(0.5);
     let normal_scale = json.normal_texture.as_ref().and_then(|info| info.scale).unwrap_or(1.0);
+    let checker = json.extensions.checker.as_ref().map(|checker| Checker {
+        color: Vec3::from(checker.color_factor.unwrap_or_default()),
+        size: checker.size.unwrap_or(1.0),
+    });
+    let checker_color = checker.map_or(Vec3::ZERO, |checker| checker.color);
     let numbers = [
         ("baseColorFactor", base_color.is_finite() && base_color.min_element() >= 0.0),
         ("emissiveFactor", emission.is_finite() && emission.min_element() >= 0.0),
         ("alphaCutoff", cutoff.is_finite() && cutoff >= 0.0),
         ("normalTexture.scale", normal_scale.is_finite()),
+        (
+            "extensions.AMBRAY_material_checker.colorFactor",
+            checker_color.is_finite() && checker_color.min_element() >= 0.0,
+        ),
     ];
     if let Some((field, _)) = numbers.iter().find(|(_, good)| !good) {
         return Err(Fault::invalid(format!("{at}.{field}"), "negative or beyond the range of numbers"));
+    }
+    if let Some(size) = checker.map(|checker| checker.size).filter(|size| !size.is_normal() || *size < 0.0) {
+        let at = format!("{at}.extensions.AMBRAY_material_checker.size");
+        return Err(Fault::invalid(at, format!("{size} is not positive")));
     }
     let alpha_mode = match json.alpha_mode.as_deref() {
         None | Some("OPAQUE") => AlphaMode::Opaque,
@@ -75,7 +88,7 @@ fn read_material(
         alpha_mode,
         double_sided: json.double_sided,
         unlit: json.extensions.unlit.is_some(),
-        checker: None,
+        checker,
     })
 }
 

@@ -11,12 +11,15 @@
 //! | POSITION, NORMAL, TANGENT, TEXCOORD_n, COLOR_0 | read; missing normals mean flat shading; missing tangents are generated where a normal map needs them |
 //! | other attributes | ignored |
 //! | morph targets, skins | applied as they are at rest: default weights, joints where the nodes are |
-//! | animations | ignored with a warning |
+//! | animations | not played, with a warning; what they move is marked |
 //! | materials: base colour, normal, emission, alpha mode, doubleSided | read |
 //! | materials: metalness, roughness, occlusion texture | ignored |
 //! | images: PNG, JPEG, WebP | read if a material uses them |
 //! | cameras | read |
 //! | KHR_lights_punctual, KHR_materials_emissive_strength, KHR_materials_unlit, KHR_mesh_quantization, KHR_texture_transform, EXT_mesh_gpu_instancing, EXT_texture_webp | read |
+//! | KHR_implicit_shapes | shapes that a node shows by AMBRAY_implicit_surface; planes are refused there |
+//! | AMBRAY_implicit_surface, AMBRAY_shape_field, AMBRAY_material_checker | read, see `docs/scenes.md` |
+//! | KHR_physics_rigid_bodies | ignored with a warning; refused if required |
 //! | KHR_materials_pbrSpecularGlossiness | its diffuse colour is the base colour |
 //! | other KHR_materials_*, KHR_xmp_json_ld | ignored with a warning; refused if required |
 //! | EXT_meshopt_compression, KHR_draco_mesh_compression, KHR_texture_basisu | the uncompressed fallback is read; refused without one |
@@ -29,9 +32,11 @@ mod document;
 mod extensions;
 mod json;
 mod materials;
+mod motion;
 mod nodes;
 mod pose;
 mod primitives;
+mod shapes;
 mod textures;
 mod validate;
 mod views;
@@ -63,7 +68,8 @@ pub(crate) fn load(
     let mut scene = Scene::default();
     let mut used = textures::TextureUses::default();
     scene.materials = materials::read_materials(&root, &mut used)?;
-    assemble::assemble(&doc, &visible, &world, &mut scene, warnings)?;
+    let moved = motion::Moved::by_animations(&root)?;
+    assemble::assemble(&doc, &visible, &world, &moved, &mut scene, warnings)?;
     (scene.textures, scene.images) = used.load(&doc, folder)?;
     warnings.tally("animations are ignored, the scene is shown at rest", root.animations.len() as u64);
     Ok(scene)

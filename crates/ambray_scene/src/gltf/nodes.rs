@@ -30,7 +30,7 @@ pub(super) fn world_transforms(root: &Root) -> Outcome<Vec<DAffine3>> {
 }
 
 /// Parent of every node; refuses nodes that have two.
-fn parents(root: &Root) -> Outcome<Vec<Option<Index>>> {
+pub(super) fn parents(root: &Root) -> Outcome<Vec<Option<Index>>> {
     let mut parents = vec![None; root.nodes.len()];
     for (index, node) in root.nodes.iter().enumerate() {
         for (i, &child) in node.children.iter().enumerate() {

@@ -13,6 +13,12 @@ pub(super) fn validate(root: &Root) -> Outcome<()> {
         check_material(root, material, &format!("materials[{i}]"))?;
     }
     check_meshes(root)?;
+    for (i, shape) in root.shapes().iter().enumerate() {
+        let distances = shape.extensions.field.as_ref().map(|field| field.distances);
+        expect(distances, root.accessors.len(), "accessor", || {
+            format!("extensions.KHR_implicit_shapes.shapes[{i}].extensions.AMBRAY_shape_field.distances")
+        })?;
+    }
     for (i, node) in root.nodes.iter().enumerate() {
         check_node(root, node, &format!("nodes[{i}]"))?;
     }
@@ -171,6 +177,11 @@ fn check_node(root: &Root, node: &Node, at: &str) -> Outcome<()> {
     let lights = root.extensions.lights.as_ref().map_or(0, |lights| lights.lights.len());
     let light = node.extensions.light.as_ref().map(|light| light.light);
     expect(light, lights, "light", || format!("{at}.extensions.KHR_lights_punctual.light"))?;
+    if let Some(surface) = &node.extensions.surface {
+        let at = |field: &str| format!("{at}.extensions.AMBRAY_implicit_surface.{field}");
+        expect(Some(surface.shape), root.shapes().len(), "shape", || at("shape"))?;
+        expect(surface.material, root.materials.len(), "material", || at("material"))?;
+    }
     for (name, &accessor) in node.extensions.instancing.iter().flat_map(|instancing| &instancing.attributes) {
         let at = || format!("{at}.extensions.EXT_mesh_gpu_instancing.attributes.{name}");
         expect(Some(accessor), root.accessors.len(), "accessor", at)?;
