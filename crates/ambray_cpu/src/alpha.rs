@@ -6,7 +6,8 @@
 pub trait AlphaTest: Sync {
     /// Whether every ray sees every triangle of the mesh; asked once a mesh while building.
     fn is_opaque(&self, mesh: u32) -> bool;
-    /// Whether a ray with this `seed` sees the point with barycentrics (`u`, `v`); asked for meshes that are not opaque.
+    /// Whether a ray with this `seed` sees the point with barycentrics (`u`, `v`); asked for meshes that are not opaque,
+    /// and for shapes, as triangle 0 at (0, 0).
     fn accepts(&self, instance: u32, triangle: u32, u: f32, v: f32, seed: u32) -> bool;
 }
 

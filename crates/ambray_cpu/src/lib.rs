@@ -9,6 +9,7 @@ mod bvh;
 mod isa;
 mod kernel;
 mod options;
+mod shapes;
 mod stats;
 mod tracer;
 

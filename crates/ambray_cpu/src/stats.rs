@@ -15,11 +15,13 @@ pub struct Stats {
     pub baked_instances: usize,
     /// Instances that share a tree with others.
     pub shared_instances: usize,
+    /// Placed shapes that rays can hit.
+    pub shapes: usize,
     /// Inner nodes.
     pub nodes: usize,
     /// Leaf blocks; triangles per leaf are `triangles / leaf_blocks`.
     pub leaf_blocks: usize,
-    /// Memory of nodes and leaf blocks.
+    /// Memory of nodes, leaf blocks and shapes.
     pub bytes: usize,
     /// Surface-area cost of the tree of unshared triangles: expected nodes plus blocks that a long random ray which meets
     /// the scene's box visits (MacDonald and Booth 1990), both counted as 1.

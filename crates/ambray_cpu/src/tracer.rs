@@ -9,6 +9,7 @@ use glam::{Affine3A, Vec3};
 use crate::bvh::build::{self, Triangle};
 use crate::bvh::layout::{Blas, Bounds, Placed, Tlas};
 use crate::kernel::{self, Any, Closest, Query};
+use crate::shapes::Shapes;
 use crate::{AlphaTest, BuildOptions, Isa, Opaque, Stats, Width};
 
 /// Traces batches of rays through a scene.
@@ -17,6 +18,8 @@ use crate::{AlphaTest, BuildOptions, Isa, Opaque, Stats, Width};
 /// and one tree over all of a scene is better than a tree of overlapping trees (Sponza has 103 primitives in one
 /// place). Meshes with more instances are baked too if [`BuildOptions::bake_budget`] allows; else they have one tree each
 /// in object space, and a tree over their instances leads there.
+///
+/// Shapes given by formulas have a tree of their own, and are traced after the triangles.
 ///
 /// A batch is traced by the thread that calls; let several threads trace batches of their own. Results are bit-identical for
 /// all [`BuildOptions`] that bake the same meshes.
@@ -30,6 +33,8 @@ pub struct Tracer<A = Opaque> {
 #[derive(Debug)]
 struct Core {
     trees: Trees,
+    /// `None` in scenes without.
+    shapes: Option<Shapes>,
     isa: Isa,
     packets: bool,
     stats: Stats,
@@ -100,17 +105,31 @@ impl Core {
                 (Trees::Sixteen(levels), stats)
             }
         };
+        let shapes = Shapes::build(scene);
+        if let Some(shapes) = &shapes {
+            let (instances, nodes, depth, bytes) = shapes.size();
+            stats.shapes = instances;
+            stats.nodes += nodes;
+            stats.depth = stats.depth.max(depth);
+            stats.bytes += bytes;
+        }
         (stats.isa, stats.width, stats.build_time) = (isa, width, start.elapsed());
         log::debug!("{}: {stats:?}", scene.name);
-        Self { trees, isa, packets: options.packets, stats }
+        Self { trees, shapes, isa, packets: options.packets, stats }
     }
 
     fn closest_hits(&self, alpha: &dyn AlphaTest, rays: &[Ray], hits: &mut [Hit]) {
         self.batch::<Closest>(alpha, rays, hits);
+        if let Some(shapes) = &self.shapes {
+            shapes.closest_hits(alpha, rays, hits);
+        }
     }
 
     fn any_hits(&self, alpha: &dyn AlphaTest, rays: &[Ray], blocked: &mut [bool]) {
         self.batch::<Any>(alpha, rays, blocked);
+        if let Some(shapes) = &self.shapes {
+            shapes.any_hits(alpha, rays, blocked);
+        }
     }
 
     fn batch<Q: Query>(&self, alpha: &dyn AlphaTest, rays: &[Ray], answers: &mut [Q::Answer]) {
@@ -246,6 +265,7 @@ impl<const W: usize> Levels<W> {
             dropped: parts.dropped,
             baked_instances: parts.baked_instances,
             shared_instances: shared.instances.len(),
+            shapes: 0,
             nodes: trees().map(|t| t.nodes.len()).sum::<usize>() + shared.nodes.len(),
             leaf_blocks: trees().map(|t| t.blocks.len()).sum(),
             bytes: trees().map(|t| size_of_val(&t.nodes[..]) + size_of_val(&t.blocks[..])).sum::<usize>()
@@ -262,8 +282,13 @@ impl<const W: usize> Levels<W> {
     }
 }
 
-/// Places a shared mesh with object-space `bounds`; `None` if no ray can hit it there.
-fn place(blas: u32, instance: u32, world_from_object: Affine3A, bounds: Bounds) -> Option<(Placed, Bounds)> {
+/// Places a shared mesh or a shape with object-space `bounds`; `None` if no ray can hit it there.
+pub(crate) fn place(
+    blas: u32,
+    instance: u32,
+    world_from_object: Affine3A,
+    bounds: Bounds,
+) -> Option<(Placed, Bounds)> {
     let object_from_world = world_from_object.inverse();
     if bounds == Bounds::EMPTY || !object_from_world.is_finite() || !world_from_object.is_finite() {
         return None;

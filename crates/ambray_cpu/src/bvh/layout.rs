@@ -96,7 +96,7 @@ pub(crate) struct Blas<const W: usize> {
     pub(crate) sah_cost: f32,
 }
 
-/// Tree over instances of shared meshes; leaves are indices into `instances`.
+/// Tree over instances of shared meshes, or of shapes; leaves are indices into `instances`.
 #[derive(Debug, Default)]
 pub(crate) struct Tlas<const W: usize> {
     pub(crate) nodes: Vec<Node<W>>,
@@ -104,11 +104,11 @@ pub(crate) struct Tlas<const W: usize> {
     pub(crate) depth: usize,
 }
 
-/// Instance of a shared mesh.
+/// Instance of a shared mesh or of a shape.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placed {
     pub(crate) object_from_world: glam::Affine3A,
-    /// Index among the shared trees.
+    /// Index among the shared trees, or among the shapes.
     pub(crate) blas: u32,
     /// Index in the scene.
     pub(crate) instance: u32,

@@ -3,9 +3,9 @@
 mod bundle;
 pub(crate) mod lanes;
 mod packet;
-mod ray;
+pub(crate) mod ray;
 mod single;
-mod slab;
+pub(crate) mod slab;
 mod triangle;
 #[cfg(target_arch = "x86_64")]
 mod x86;
