@@ -84,6 +84,12 @@ impl Camera {
         self.projection
     }
 
+    /// Half the height of the picture at depth 1, or anywhere in parallel projection, scene units.
+    #[must_use]
+    pub const fn half_height(&self) -> f32 {
+        self.half_height
+    }
+
     /// Width and height of the picture in pixels.
     #[must_use]
     pub const fn size(&self) -> (u32, u32) {

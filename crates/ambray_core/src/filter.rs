@@ -60,6 +60,12 @@ impl From<&Settings> for Filter {
 }
 
 impl Filter {
+    /// Tolerance of the depth test, and the smallest cosine between normals.
+    #[must_use]
+    pub const fn constants(&self) -> [f32; 2] {
+        [self.tolerance, self.cos_normal]
+    }
+
     /// Acceptance A(p, q) of pixel `q` by pixel `p`, both surfaces: close to its tangent plane or depth, and facing alike.
     #[must_use]
     pub fn accepts(&self, p: &Guide, q: &Guide) -> bool {

@@ -128,6 +128,10 @@ pub struct StageTimes {
     pub ambient: Duration,
     /// Geometry-aware filter and composition.
     pub filter: Duration,
+    /// Structures that are rebuilt for each frame.
+    pub structures: Duration,
+    /// Copying the planes from a device to the host.
+    pub transfer: Duration,
     /// The whole frame, without building the scene.
     pub total: Duration,
 }

@@ -40,6 +40,12 @@ impl RayOffset {
         Self { near_zero: scale * Self::UNIT.near_zero, distance: scale * Self::UNIT.distance }
     }
 
+    /// The constants: coordinates below the first take the second as a fixed distance.
+    #[must_use]
+    pub const fn constants(&self) -> [f32; 2] {
+        [self.near_zero, self.distance]
+    }
+
     /// Moves `p` off a surface along its geometric normal `n`.
     ///
     /// `p` should come from barycentric coordinates, and `n` must be the unit normal on the side of the outgoing ray.

@@ -2,6 +2,12 @@
 
 use glam::Vec3;
 
+use crate::{
+    gather::ShadedPoint,
+    sampling::{PixelKey, pcg},
+    settings::Settings,
+};
+
 /// A point of a surface to evaluate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QueryPoint {
@@ -11,6 +17,21 @@ pub struct QueryPoint {
     pub normal: Vec3,
     /// Sample class, 0 to 15.
     pub class: u8,
+}
+
+impl QueryPoint {
+    /// The point as the estimator sees it.
+    #[must_use]
+    pub fn shaded(&self, settings: &Settings) -> ShadedPoint {
+        let normal = self.normal.normalize();
+        // A point has no pixel: its position takes that part, so that the result does not depend on its place in a list.
+        let [x, y, z] = self.position.to_array().map(f32::to_bits);
+        let hash = PixelKey::new(x, y.wrapping_add(pcg(z)), settings.frame, settings.seed).hash;
+        let key = PixelKey { class: self.class, hash };
+        // The triangle is not known; the point itself is rounded to its own coordinates at least.
+        let reach = self.position.abs().max_element();
+        ShadedPoint { position: self.position, geometric_normal: normal, reach, normal, key }
+    }
 }
 
 /// Ambient light at a [`QueryPoint`].

@@ -164,12 +164,7 @@ impl SampleSets {
     /// Sets of `spp` directions for `frame`. `seed` 0 is the default scramble.
     #[must_use]
     pub fn new(sampling: Sampling, sequence: Sequence, spp: u32, frame: u32, seed: u32) -> Self {
-        // R2 is better where blocks of a (0,2)-sequence are not elementary (spec §6).
-        let sequence = match sequence {
-            Sequence::Auto if spp.is_power_of_two() => Sequence::Owen,
-            Sequence::Auto => Sequence::R2,
-            chosen => chosen,
-        };
+        let sequence = sequence.for_spp(spp);
         let seeds = if seed == 0 { DEFAULT_SEEDS } else { seed_pair(pcg(seed)) };
         let classes = match sampling {
             Sampling::Interleaved => CLASS_COUNT,
@@ -210,6 +205,18 @@ impl SampleSets {
                 SampleDirection::from_bits(sequence_point(self.sequence, j, seed_pair(pixel.hash)))
             }
             Sampling::Independent => SampleDirection::from_bits(seed_pair(pixel.ray_seed(j))),
+        }
+    }
+}
+
+impl Sequence {
+    /// The generator itself: `Auto` is R2 where blocks of `spp` points of a (0,2)-sequence are not elementary (spec §6).
+    #[must_use]
+    pub const fn for_spp(self, spp: u32) -> Self {
+        match self {
+            Self::Auto if spp.is_power_of_two() => Self::Owen,
+            Self::Auto => Self::R2,
+            chosen => chosen,
         }
     }
 }

@@ -213,9 +213,14 @@ impl GatherParams<'_> {
         self.near_radiance != NearRadiance::Off
     }
 
-    /// Width of the footprint of a hit at distance 1: a ray stands for the share 1/N of the cosine-weighted
-    /// hemisphere, whose area is π.
+    /// Width of the footprint of a hit at distance 1, of `spp` rays: a ray stands for the share 1/N of the
+    /// cosine-weighted hemisphere, whose area is π.
+    #[must_use]
+    pub fn cone_width_of(spp: u32) -> f32 {
+        (PI / spp as f32).sqrt()
+    }
+
     fn cone_width(&self) -> f32 {
-        (PI / self.samples.spp() as f32).sqrt()
+        Self::cone_width_of(self.samples.spp())
     }
 }
