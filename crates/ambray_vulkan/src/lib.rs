@@ -1,11 +1,30 @@
 //! Ambray's Vulkan backend: the same picture by hardware ray tracing.
 
+mod acceleration;
+mod backend;
 mod commands;
+mod constants;
 mod context;
 mod error;
+pub mod layout;
 mod memory;
+mod pipeline;
+mod planes;
+mod points;
+mod rays;
+mod readback;
+mod schedule;
+mod shaders;
+mod state;
+mod tables;
 
+pub use acceleration::{
+    Acceleration, AccelerationOptions, AccelerationStats, Bounds, Culling, GeometryKind, Grouping, Placement,
+    TopLevel,
+};
+pub use backend::{VulkanBackend, VulkanOptions};
 pub use commands::{CommandSet, Recorder, Timing, Work};
 pub use context::{Capability, Context, DeviceKind, DeviceOptions, DeviceReport, Limits, Live, Need, probe};
 pub use error::{MemorySide, Result, VulkanError};
 pub use memory::{Buffer, Location};
+pub use pipeline::TraceMode;

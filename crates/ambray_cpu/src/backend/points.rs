@@ -5,9 +5,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use ambray_core::{
     compose::near_radiance,
     control::{Cancelled, Control},
-    gather::{GatherParams, GatherScratch, Gathered, ShadedPoint, gather},
+    gather::{GatherParams, GatherScratch, Gathered, gather},
     query::{QueryPoint, QueryResult},
-    sampling::{PixelKey, pcg},
     settings::Settings,
     view::View,
 };
@@ -31,7 +30,7 @@ pub(super) fn run(
     let chunks = points.par_chunks(CHUNK).zip(results.par_chunks_mut(CHUNK));
     chunks.try_for_each_init(GatherScratch::default, |scratch, (points, results)| {
         control.check()?;
-        let shaded: Vec<_> = points.iter().map(|point| shaded_point(point, settings)).collect();
+        let shaded: Vec<_> = points.iter().map(|point| point.shaded(settings)).collect();
         let mut gathered = vec![Gathered::default(); points.len()];
         gather(world, params, &shaded, scratch, &mut gathered);
         for (result, gathered) in results.iter_mut().zip(&gathered) {
@@ -42,17 +41,6 @@ pub(super) fn run(
         Ok(())
     })?;
     Ok(results)
-}
-
-fn shaded_point(point: &QueryPoint, settings: &Settings) -> ShadedPoint {
-    let normal = point.normal.normalize();
-    // A point has no pixel: its position takes that part, so that the result does not depend on its place in the list.
-    let [x, y, z] = point.position.to_array().map(f32::to_bits);
-    let hash = PixelKey::new(x, y.wrapping_add(pcg(z)), settings.frame, settings.seed).hash;
-    let key = PixelKey { class: point.class, hash };
-    // The triangle is not known; the point itself is rounded to its own coordinates at least.
-    let reach = point.position.abs().max_element();
-    ShadedPoint { position: point.position, geometric_normal: normal, reach, normal, key }
 }
 
 fn finish(gathered: &Gathered, settings: &Settings, view: &View) -> QueryResult {

@@ -1,0 +1,57 @@
+// Pass 1, first part: what each pixel sees.
+#ifndef PRIMARY_PASS_GLSL
+#define PRIMARY_PASS_GLSL
+
+#include "camera.glsl"
+#include "sampling.glsl"
+
+void write_nothing(uint index) {
+    Plane(VIEW.positions).at[index] = vec4(0.0, 0.0, 0.0, FAR);
+    Plane(VIEW.geometric).at[index] = vec4(0.0);
+    Plane(VIEW.shading).at[index] = vec4(vec3(0.0), uintBitsToFloat(NONE));
+    Plane(VIEW.smooth_normals).at[index] = vec4(vec3(0.0), uintBitsToFloat(NONE));
+    Plane(VIEW.albedo).at[index] = vec4(vec3(0.0), uintBitsToFloat(1u));
+    Plane(VIEW.emission).at[index].rgb = VIEW.background;
+}
+
+void write_surface(uint index, Ray ray, Hit hit) {
+    float width = pixel_footprint(view_depth(ray.origin + hit.t * ray.direction));
+    At at = at_hit(ray.origin, ray.direction, hit, width);
+    Shade shade = shade_surface(at, hit, 1u);
+
+    vec3 geometric_normal = at.geometric_normal;
+    vec3 smooth_normal = is_shape(hit.instance) ? geometric_normal : vertex_normal(at, geometric_normal);
+    vec3 bent_normal = shading_normal(at, smooth_normal);
+    // Towards the viewer; the shading normal goes with the smooth one, so that it never jumps to the other side.
+    geometric_normal = towards(geometric_normal, -ray.direction);
+    if (dot(smooth_normal, geometric_normal) < 0.0) {
+        smooth_normal = -smooth_normal;
+        bent_normal = -bent_normal;
+    }
+    switch (NORMALS) {
+        case NORMALS_SHADING: break;
+        case NORMALS_SMOOTH: bent_normal = smooth_normal; break;
+        default: bent_normal = geometric_normal; smooth_normal = geometric_normal; break;
+    }
+    Plane(VIEW.positions).at[index] = vec4(at.position, view_depth(at.position));
+    Plane(VIEW.geometric).at[index] = vec4(geometric_normal, at.reach);
+    Plane(VIEW.shading).at[index] = vec4(bent_normal, uintBitsToFloat(at.material));
+    Plane(VIEW.smooth_normals).at[index] = vec4(smooth_normal, uintBitsToFloat(hit.instance));
+    Plane(VIEW.albedo).at[index] = vec4(shade.albedo, uintBitsToFloat(1u));
+    Plane(VIEW.emission).at[index].rgb = shade.emission;
+}
+
+void run(uvec2 pixel, uint index) {
+    Ray ray = primary_ray(pixel, primary_seed(pixel, VIEW.frame, VIEW.seed));
+    Hit hit = trace_closest(RAY_PRIMARY, ray);
+    if (hit.instance == NONE) {
+        write_nothing(index);
+    } else {
+        write_surface(index, ray, hit);
+    }
+    Plane(VIEW.emission).at[index].a = uintBitsToFloat(sample_class(pixel));
+    Plane(VIEW.direct).at[index] = vec4(vec3(0.0), uintBitsToFloat(pixel_hash(pixel, VIEW.frame, VIEW.seed)));
+    Tallies(VIEW.tallies).at[index] = Tally(0u, 0u, 0u, 0u, 0u, 0u);
+}
+
+#endif

@@ -1,0 +1,51 @@
+// The scene in tables, read through device addresses.
+#ifndef SCENE_GLSL
+#define SCENE_GLSL
+
+#include "layout.glsl"
+
+#define TABLE(Name, Element) layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Name { Element at[]; }
+TABLE(Placements, Placement);
+TABLE(Instances, Instance);
+TABLE(Meshes, Mesh);
+TABLE(Materials, Material);
+TABLE(Textures, Texture);
+TABLE(Levels, ImageLevel);
+TABLE(Lights, Light);
+TABLE(ShapeInstances, ShapeInstance);
+TABLE(FloatArray, float);
+TABLE(Uints, uint);
+TABLE(Uvec2s, uvec2);
+TABLE(Uvec3s, uvec3);
+TABLE(Vec2s, vec2);
+TABLE(Vec3s, vec3);
+TABLE(Vec4s, vec4);
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Shapes { Shape at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer SceneReference { SceneTables data; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer ViewReference { View data; };
+
+// Planes are written, too.
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Plane { vec4 at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Tallies { Tally at[]; };
+
+layout(push_constant, scalar) uniform PushBlock { Push push; };
+
+#define SCENE SceneReference(push.scene).data
+#define VIEW ViewReference(push.view).data
+
+// The instance and the triangle (x, y) of a primitive that the structures report.
+uvec2 resolve(uint custom_index, uint primitive) {
+    Placement placement = Placements(SCENE.placements).at[custom_index];
+    uvec2 reference = Uvec2s(SCENE.refs).at[placement.first_ref + primitive];
+    return uvec2(placement.instance == NONE ? reference.x : placement.instance, reference.y);
+}
+
+bool is_shape(uint instance) {
+    return instance >= SCENE.mesh_instances;
+}
+
+ShapeInstance shape_instance(uint instance) {
+    return ShapeInstances(SCENE.shape_instances).at[instance - SCENE.mesh_instances];
+}
+
+#endif

@@ -1,0 +1,286 @@
+//! The Vulkan backend: a scene on a device, from which frames, points and batches of rays are evaluated.
+
+use std::{
+    sync::{Arc, Mutex, MutexGuard, PoisonError},
+    time::{Duration, Instant},
+};
+
+use ambray_core::{
+    control::Control,
+    frame::{Frame, FrameStats, StageTimes},
+    query::{QueryPoint, QueryResult},
+    settings::{NearRadiance, RadianceSource, Settings, Thin},
+    trace::{Hit, Ray},
+    view::View,
+};
+use ambray_scene::{Scene, surface::Surfaces};
+
+use crate::{
+    Acceleration, AccelerationOptions, AccelerationStats, Context, Culling, Result, TraceMode,
+    layout::{Push, Specialization},
+    pipeline::TracePass,
+    points, rays, readback,
+    schedule::{Pass, Step, StepWork, submissions},
+    state::{Inputs, State},
+    tables::Tables,
+};
+
+/// How a scene is put on a device.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct VulkanOptions {
+    /// How rays are traced.
+    pub trace: TraceMode,
+    /// How acceleration structures are built.
+    pub acceleration: AccelerationOptions,
+}
+
+/// A scene made ready for rendering on a device.
+#[derive(Debug)]
+pub struct VulkanBackend {
+    /// Dropped first: its commands use the rest.
+    state: Mutex<State>,
+    acceleration: Acceleration,
+    tables: Tables,
+    context: Arc<Context>,
+    mode: TraceMode,
+}
+
+impl VulkanBackend {
+    /// Uploads `scene` and builds its acceleration structures.
+    ///
+    /// # Panics
+    /// If an index in the scene is out of range.
+    pub fn new(
+        context: &Arc<Context>,
+        scene: &Arc<Scene>,
+        options: VulkanOptions,
+        control: &Control<'_>,
+    ) -> Result<Self> {
+        let mode = options.trace.resolve(context)?;
+        let surfaces = Surfaces::new(Arc::clone(scene));
+        let opaque: Vec<bool> = (0..scene.meshes.len() as u32).map(|mesh| surfaces.is_opaque(mesh)).collect();
+        let acceleration = Acceleration::build(context, scene, &opaque, &options.acceleration, control)?;
+        let tables = Tables::new(context, scene, acceleration.placements(), acceleration.refs())?;
+        let state = State::new(context, &acceleration, mode)?;
+        Ok(Self { state: Mutex::new(state), acceleration, tables, context: Arc::clone(context), mode })
+    }
+
+    /// The device.
+    #[must_use]
+    pub const fn context(&self) -> &Arc<Context> {
+        &self.context
+    }
+
+    /// How rays are traced: [`TraceMode::Pipeline`] or [`TraceMode::Query`].
+    #[must_use]
+    pub const fn trace_mode(&self) -> TraceMode {
+        self.mode
+    }
+
+    /// The acceleration structures in numbers.
+    #[must_use]
+    pub const fn acceleration(&self) -> &AccelerationStats {
+        self.acceleration.stats()
+    }
+
+    /// Bytes of the planes of a frame, a pixel.
+    #[must_use]
+    pub fn bytes_per_pixel() -> u64 {
+        crate::planes::Plane::ALL.iter().map(|plane| plane.stride()).sum()
+    }
+
+    /// Renders a frame and copies it to the host.
+    pub fn render(&self, settings: &Settings, view: &View, control: Control<'_>) -> Result<Frame> {
+        let start = Instant::now();
+        let mut state = self.state();
+        let mut times = self.draw(&mut state, settings, view, control)?;
+        let transfer = Instant::now();
+        let mut frame = readback::frame(&self.context, &state, settings, view)?;
+        times.transfer = transfer.elapsed();
+        times.total = start.elapsed();
+        frame.stats.times = times;
+        Ok(frame)
+    }
+
+    /// Renders a frame and leaves it on the device: for measurements.
+    pub fn measure(&self, settings: &Settings, view: &View, control: Control<'_>) -> Result<FrameStats> {
+        let start = Instant::now();
+        let mut state = self.state();
+        let mut times = self.draw(&mut state, settings, view, control)?;
+        times.total = start.elapsed();
+        let (width, height) = view.camera.size();
+        let tallies = readback::tallies(&self.context, &state, width as usize * height as usize)?;
+        Ok(FrameStats { rays: readback::ray_counts(&tallies), times, threads: 0 })
+    }
+
+    /// Evaluates ambient light at `points`; result `i` belongs to point `i`.
+    pub fn query(
+        &self,
+        settings: &Settings,
+        view: &View,
+        points: &[QueryPoint],
+        control: Control<'_>,
+    ) -> Result<Vec<QueryResult>> {
+        let mut state = self.state();
+        let mut results = Vec::with_capacity(points.len());
+        for chunk in points.chunks(points::MOST) {
+            let size = points::folded(chunk.len());
+            let inputs = Inputs { settings, view, size, count: chunk.len() as u32 };
+            let constants = state.prepare(&inputs)?;
+            points::write(&self.context, &mut state, settings, chunk)?;
+            state.write_view(&constants);
+            let passes = [Pass { work: StepWork::Trace(TracePass::Ambient), cost: ambient_cost(settings, view) }];
+            let share = chunk.len() as f32 / points.len() as f32;
+            let done = results.len() as f32 / points.len() as f32;
+            let progress = |part: f32| (control.progress)(done + share * part);
+            let control = Control { progress: &progress, ..control };
+            self.run(&mut state, settings, &passes, size, None, control)?;
+            points::read(&self.context, &state, settings, view, chunk.len(), &mut results)?;
+        }
+        Ok(results)
+    }
+
+    /// The closest hit of each of `rays`.
+    pub fn closest_hits(&self, rays: &[Ray]) -> Result<Vec<Hit>> {
+        self.trace(rays, false)
+    }
+
+    /// Whether each of `rays` hits anything.
+    pub fn any_hits(&self, rays: &[Ray]) -> Result<Vec<bool>> {
+        Ok(self.trace(rays, true)?.iter().map(Hit::is_hit).collect())
+    }
+
+    fn trace(&self, rays: &[Ray], any: bool) -> Result<Vec<Hit>> {
+        let mut state = self.state();
+        let settings = Settings::default();
+        let mut hits = Vec::with_capacity(rays.len());
+        for chunk in rays.chunks(points::MOST) {
+            let size = points::folded(chunk.len());
+            let batch = rays::Batch::new(&self.context, chunk)?;
+            let mut constants = rays::constants(size, chunk.len(), any);
+            batch.address(&mut constants);
+            state.write_view(&constants);
+            let passes = [Pass { work: StepWork::Trace(TracePass::Rays), cost: 1 }];
+            self.run(&mut state, &settings, &passes, size, None, Control::default())?;
+            batch.read(&mut hits);
+        }
+        Ok(hits)
+    }
+
+    /// Both passes of a frame, on the device.
+    fn draw(
+        &self,
+        state: &mut State,
+        settings: &Settings,
+        view: &View,
+        control: Control<'_>,
+    ) -> Result<StageTimes> {
+        let (width, height) = view.camera.size();
+        let inputs = Inputs { settings, view, size: [width, height], count: width * height };
+        let constants = state.prepare(&inputs)?;
+        state.write_view(&constants);
+        let passes = [
+            Pass { work: StepWork::Trace(TracePass::Primary), cost: 1 },
+            Pass { work: StepWork::Trace(TracePass::Direct), cost: view.lights.len().max(1) as u64 },
+            Pass { work: StepWork::Trace(TracePass::Ambient), cost: ambient_cost(settings, view) },
+            Pass { work: StepWork::Filter, cost: 1 },
+        ];
+        let culling = Culling {
+            camera: &view.camera,
+            reach: view.openness.reach().max(view.radius),
+            has_lights: !view.lights.is_empty(),
+        };
+        self.run(state, settings, &passes, [width, height], Some(&culling), control)
+    }
+
+    /// Runs `passes` over `size` pixels in one or more submissions.
+    fn run(
+        &self,
+        state: &mut State,
+        settings: &Settings,
+        passes: &[Pass],
+        size: [u32; 2],
+        culling: Option<&Culling<'_>>,
+        control: Control<'_>,
+    ) -> Result<StageTimes> {
+        control.check()?;
+        let programs = state.programs(&Specialization::of(settings))?;
+        let submissions = submissions(passes, size, state.budget());
+        let mut times = StageTimes::default();
+        for (index, steps) in submissions.iter().enumerate() {
+            let State { commands, top, view_buffer, .. } = &mut *state;
+            commands.submit(|recorder| {
+                if index == 0 {
+                    top.build(recorder, &self.acceleration, culling);
+                    recorder.timestamp("structures");
+                }
+                let work = programs.tracing_work();
+                let mut last = None;
+                for &Step { work: step, origin, extent } in steps {
+                    if last.is_some_and(|last| last != step) {
+                        recorder.timestamp(label(last.unwrap_or(step)));
+                        recorder.barrier(work, if step == StepWork::Filter { crate::Work::Compute } else { work });
+                    }
+                    last = Some(step);
+                    let (scene, view) = (self.tables.address(), view_buffer.address());
+                    let push = Push { scene, view, origin, extent };
+                    match step {
+                        StepWork::Trace(pass) => programs.trace(recorder, pass, push),
+                        StepWork::Filter => programs.filter(recorder, push),
+                    }
+                }
+                if let Some(last) = last {
+                    recorder.timestamp(label(last));
+                }
+                // Later submissions and copies see what was written.
+                recorder.barrier(work, crate::Work::Everything);
+                recorder.barrier(crate::Work::Compute, crate::Work::Everything);
+                Ok(())
+            })?;
+            for timing in commands.wait()? {
+                *stage(&mut times, timing.label) += timing.duration.unwrap_or_default();
+            }
+            (control.progress)((index + 1) as f32 / submissions.len() as f32);
+            control.check()?;
+        }
+        Ok(times)
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        // Everything in the state is made anew or overwritten for each frame, so a panic of another thread does not matter.
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Rays a pixel of the ambient pass, at most.
+fn ambient_cost(settings: &Settings, view: &View) -> u64 {
+    let spp = u64::from(settings.spp);
+    let chords = match settings.thin {
+        Thin::Off => 0,
+        Thin::Paper => spp * (spp - 1) / 2,
+        Thin::Sheet => spp / 2,
+    };
+    let is_lit = settings.near_radiance != NearRadiance::Off && settings.radiance_source == RadianceSource::Lit;
+    let shadows = if is_lit { view.lights.len() as u64 } else { 0 };
+    (spp + chords) * (1 + shadows)
+}
+
+const fn label(work: StepWork) -> &'static str {
+    match work {
+        StepWork::Trace(TracePass::Primary) => "primary",
+        StepWork::Trace(TracePass::Direct) => "direct",
+        StepWork::Trace(TracePass::Ambient) => "ambient",
+        StepWork::Trace(TracePass::Rays) => "rays",
+        StepWork::Filter => "filter",
+    }
+}
+
+fn stage<'a>(times: &'a mut StageTimes, label: &str) -> &'a mut Duration {
+    match label {
+        "structures" => &mut times.structures,
+        "primary" => &mut times.primary,
+        "direct" => &mut times.direct,
+        "filter" => &mut times.filter,
+        _ => &mut times.ambient,
+    }
+}

@@ -1,0 +1,174 @@
+//! Everything that Rust and GLSL share, declared once: structures, constants and specialisation constants.
+//!
+//! [`glsl`] is the GLSL of all of it; `cargo xtask shaders` writes it to `shaders/include/layout.glsl`, and a test holds
+//! the two together. Structures use the scalar block layout, which is that of `repr(C)` for these types; infinite lengths
+//! are stored as [`FAR`], since GPUs need not preserve infinities.
+
+mod declare;
+mod scene;
+mod specialization;
+mod view;
+
+pub use scene::{
+    ImageLevel, Instance, Light, Material, Mesh, Placement, SceneTables, Shape, ShapeInstance, Texture,
+    TextureUse,
+};
+pub use specialization::Specialization;
+pub use view::{FilterConstants, GatherConstants, Push, Ray, RayHit, Tally, View};
+
+use declare::constants;
+
+constants! {
+    /// Stands for "none" in indices.
+    NONE: u32 = 4294967295;
+    /// Stands for infinite lengths.
+    FAR: f32 = 3.4028235e38;
+
+    /// Ray types: offsets into the shader binding table, and bits of the instance masks.
+    RAY_PRIMARY: u32 = 0;
+    RAY_AMBIENT: u32 = 1;
+    RAY_CHORD: u32 = 2;
+    RAY_SHADOW: u32 = 3;
+    /// Number of ray types: stride of the hit groups of one kind of geometry.
+    RAY_TYPES: u32 = 4;
+
+    /// Kinds of geometry: each has its hit groups.
+    GEOMETRY_OPAQUE: u32 = 0;
+    GEOMETRY_MASKED: u32 = 1;
+    GEOMETRY_SHAPE: u32 = 2;
+    GEOMETRY_KINDS: u32 = 3;
+
+    /// Kinds of materials: indices of the callable shaders.
+    MATERIAL_LIT: u32 = 0;
+    MATERIAL_UNLIT: u32 = 1;
+    MATERIAL_EMISSIVE: u32 = 2;
+    MATERIAL_CHECKER: u32 = 3;
+    MATERIAL_KINDS: u32 = 4;
+
+    ALPHA_OPAQUE: u32 = 0;
+    ALPHA_MASK: u32 = 1;
+    ALPHA_BLEND: u32 = 2;
+
+    WRAP_REPEAT: u32 = 0;
+    WRAP_MIRROR: u32 = 1;
+    WRAP_CLAMP: u32 = 2;
+    TEXEL_NEAREST: u32 = 0;
+    TEXEL_LINEAR: u32 = 1;
+
+    SHAPE_SPHERE: u32 = 0;
+    SHAPE_BOX: u32 = 1;
+    SHAPE_CAPSULE: u32 = 2;
+    SHAPE_CYLINDER: u32 = 3;
+    SHAPE_FIELD: u32 = 4;
+
+    LIGHT_DIRECTIONAL: u32 = 0;
+    LIGHT_POINT: u32 = 1;
+    LIGHT_SPOT: u32 = 2;
+
+    NORMALS_SHADING: u32 = 0;
+    NORMALS_SMOOTH: u32 = 1;
+    NORMALS_GEOMETRIC: u32 = 2;
+
+    FALLOFF_POWER: u32 = 0;
+    FALLOFF_EXPONENTIAL: u32 = 1;
+    FALLOFF_EXPONENTIAL_TRUNCATED: u32 = 2;
+    FALLOFF_STEP: u32 = 3;
+
+    NEAR_AVERAGED: u32 = 0;
+    NEAR_AVERAGED_PLAIN: u32 = 1;
+    NEAR_PER_HIT: u32 = 2;
+    NEAR_OFF: u32 = 3;
+
+    SOURCE_ALBEDO: u32 = 0;
+    SOURCE_AMBIENT: u32 = 1;
+    SOURCE_SELF_SIMILAR: u32 = 2;
+    SOURCE_LIT: u32 = 3;
+    SOURCE_LIT_UNSHADOWED: u32 = 4;
+
+    THIN_OFF: u32 = 0;
+    THIN_PAPER: u32 = 1;
+    THIN_SHEET: u32 = 2;
+
+    SAMPLING_INTERLEAVED: u32 = 0;
+    SAMPLING_SAME: u32 = 1;
+    SAMPLING_RANDOM: u32 = 2;
+    SAMPLING_INDEPENDENT: u32 = 3;
+
+    SEQUENCE_OWEN: u32 = 1;
+    SEQUENCE_R2: u32 = 2;
+
+    WINDOW_OFF: u32 = 0;
+    WINDOW_BOX: u32 = 1;
+    WINDOW_CENTRED: u32 = 2;
+
+    TEST_PLANE: u32 = 0;
+    TEST_ABSOLUTE: u32 = 1;
+    TEST_RELATIVE: u32 = 2;
+    TEST_NONE: u32 = 3;
+
+    /// Pixels of a workgroup of the filter, and how far its taps reach.
+    FILTER_WIDTH: u32 = 16;
+    FILTER_HEIGHT: u32 = 8;
+    FILTER_REACH: u32 = 2;
+    /// Pixels of a workgroup of the passes that trace by ray queries.
+    QUERY_WIDTH: u32 = 8;
+    QUERY_HEIGHT: u32 = 4;
+}
+
+/// The GLSL of everything in this module.
+#[must_use]
+pub fn glsl() -> String {
+    let mut text = String::from(
+        "// Made by `cargo xtask shaders` from src/layout.rs. Do not edit.\n#ifndef LAYOUT_GLSL\n#define LAYOUT_GLSL\n\n",
+    );
+    text.push_str(CONSTANTS_GLSL);
+    text.push('\n');
+    text.push_str(&specialization::glsl());
+    scene::glsl(&mut text);
+    view::glsl(&mut text);
+    text.push_str("\n#endif\n");
+    text
+}
+
+/// `length`, with infinity as [`FAR`].
+#[must_use]
+pub(crate) const fn finite(length: f32) -> f32 {
+    length.min(FAR)
+}
+
+#[cfg(test)]
+mod tests {
+    use ambray_core::settings::{
+        Falloff, FilterTest, NearRadiance, Normals, RadianceSource, Sampling, Sequence, Thin, Window,
+    };
+
+    use super::*;
+
+    /// Choices of the settings are handed over as their discriminants.
+    #[test]
+    fn constants_are_the_discriminants_of_the_settings() {
+        assert_eq!([NORMALS_SHADING, NORMALS_SMOOTH, NORMALS_GEOMETRIC], of(Normals::ALL, |c| c as u32));
+        let falloffs = [FALLOFF_POWER, FALLOFF_EXPONENTIAL, FALLOFF_EXPONENTIAL_TRUNCATED, FALLOFF_STEP];
+        assert_eq!(falloffs, of(Falloff::ALL, |c| c as u32));
+        let near = [NEAR_AVERAGED, NEAR_AVERAGED_PLAIN, NEAR_PER_HIT, NEAR_OFF];
+        assert_eq!(near, of(NearRadiance::ALL, |c| c as u32));
+        let sources = [SOURCE_ALBEDO, SOURCE_AMBIENT, SOURCE_SELF_SIMILAR, SOURCE_LIT, SOURCE_LIT_UNSHADOWED];
+        assert_eq!(sources, of(RadianceSource::ALL, |c| c as u32));
+        assert_eq!([THIN_OFF, THIN_PAPER, THIN_SHEET], of(Thin::ALL, |c| c as u32));
+        let sampling = [SAMPLING_INTERLEAVED, SAMPLING_SAME, SAMPLING_RANDOM, SAMPLING_INDEPENDENT];
+        assert_eq!(sampling, of(Sampling::ALL, |c| c as u32));
+        assert_eq!([0, SEQUENCE_OWEN, SEQUENCE_R2], of(Sequence::ALL, |c| c as u32));
+        assert_eq!([WINDOW_OFF, WINDOW_BOX, WINDOW_CENTRED], of(Window::ALL, |c| c as u32));
+        assert_eq!([TEST_PLANE, TEST_ABSOLUTE, TEST_RELATIVE, TEST_NONE], of(FilterTest::ALL, |c| c as u32));
+    }
+
+    #[track_caller]
+    fn of<T: Copy, const N: usize>(all: &[T], number: impl Fn(T) -> u32) -> [u32; N] {
+        all.iter().map(|&choice| number(choice)).collect::<Vec<_>>().try_into().expect("as many alternatives")
+    }
+
+    #[test]
+    fn committed_glsl_is_this() {
+        assert_eq!(include_str!("../shaders/include/layout.glsl"), glsl(), "run `cargo xtask shaders`");
+    }
+}

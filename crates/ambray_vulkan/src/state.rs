@@ -1,0 +1,158 @@
+//! What is kept from frame to frame: planes, programs, sample tables, the top-level structure.
+
+use std::sync::Arc;
+
+use ambray_core::{
+    settings::{Sampling, Sequence, Settings},
+    view::View,
+};
+use ash::vk::BufferUsageFlags;
+
+use crate::{
+    Acceleration, Buffer, CommandSet, Context, DeviceKind, Location, Result, TopLevel, TraceMode,
+    constants::{self, SampleTables},
+    layout::{self, Specialization},
+    pipeline::{Interface, Programs},
+    planes::Planes,
+    schedule::Budget,
+};
+
+/// Programs of so many settings are kept.
+const KEPT_PROGRAMS: usize = 8;
+
+/// What a frame or a list of points is evaluated with.
+pub(crate) struct Inputs<'a> {
+    pub(crate) settings: &'a Settings,
+    pub(crate) view: &'a View,
+    /// Pixels, or points folded into rows.
+    pub(crate) size: [u32; 2],
+    pub(crate) count: u32,
+}
+
+/// What decides the sample tables.
+type SampleKey = (Sampling, Sequence, u32, u32, u32);
+
+/// Used by one frame at a time.
+#[derive(Debug)]
+pub(crate) struct State {
+    /// Dropped first: waits for what uses the rest.
+    pub(crate) commands: CommandSet,
+    pub(crate) top: TopLevel,
+    pub(crate) view_buffer: Buffer,
+    planes: Option<Planes>,
+    samples: Option<(SampleKey, Buffer, Buffer)>,
+    lights: Option<(Vec<layout::Light>, Buffer)>,
+    /// The last used comes first.
+    programs: Vec<(Specialization, Arc<Programs>)>,
+    interface: Arc<Interface>,
+    context: Arc<Context>,
+    mode: TraceMode,
+}
+
+impl State {
+    /// `mode` is resolved.
+    pub(crate) fn new(context: &Arc<Context>, acceleration: &Acceleration, mode: TraceMode) -> Result<Self> {
+        let top = TopLevel::new(context, acceleration)?;
+        let interface = Interface::new(context)?;
+        interface.bind(top.handle());
+        let usage = BufferUsageFlags::STORAGE_BUFFER | BufferUsageFlags::SHADER_DEVICE_ADDRESS;
+        let view_buffer =
+            context.buffer("view", size_of::<layout::View>() as u64, usage, Location::Upload)?;
+        Ok(Self {
+            commands: CommandSet::new(context)?,
+            top,
+            view_buffer,
+            planes: None,
+            samples: None,
+            lights: None,
+            programs: Vec::new(),
+            interface,
+            context: Arc::clone(context),
+            mode,
+        })
+    }
+
+    /// Makes planes and tables fit for `inputs`; returns the constants with all addresses.
+    pub(crate) fn prepare(&mut self, inputs: &Inputs<'_>) -> Result<layout::View> {
+        let pixels = u64::from(inputs.size[0]) * u64::from(inputs.size[1]);
+        if !self.planes.as_ref().is_some_and(|planes| planes.suits(pixels)) {
+            // Freed before the new ones are made.
+            self.planes = None;
+            self.planes = Some(Planes::new(&self.context, pixels)?);
+        }
+        let mut view = constants::view(inputs.settings, inputs.view);
+        view.size = inputs.size;
+        view.count = inputs.count;
+        self.planes().address(&mut view);
+        let (directions, by_azimuth) = self.samples(inputs.settings)?;
+        view.gather.directions = directions;
+        view.gather.by_azimuth = by_azimuth;
+        view.gather.lights = self.lights(inputs.view)?;
+        Ok(view)
+    }
+
+    /// Writes the constants of the next submissions.
+    pub(crate) fn write_view(&mut self, view: &layout::View) {
+        self.view_buffer.write(0, &[*view]);
+    }
+
+    /// The planes.
+    ///
+    /// # Panics
+    /// Before [`prepare`](Self::prepare).
+    pub(crate) fn planes(&self) -> &Planes {
+        self.planes.as_ref().expect("prepared")
+    }
+
+    /// Programs for these constants.
+    pub(crate) fn programs(&mut self, specialization: &Specialization) -> Result<Arc<Programs>> {
+        let found = self.programs.iter().position(|(kept, _)| kept == specialization);
+        let entry = match found {
+            Some(index) => self.programs.remove(index),
+            None => {
+                let programs = Programs::new(&self.interface, self.mode, specialization)?;
+                self.programs.truncate(KEPT_PROGRAMS - 1);
+                (*specialization, Arc::new(programs))
+            }
+        };
+        let programs = Arc::clone(&entry.1);
+        self.programs.insert(0, entry);
+        Ok(programs)
+    }
+
+    pub(crate) fn budget(&self) -> Budget {
+        let is_software = self.context.report().kind == DeviceKind::Software;
+        Budget::of(self.context.limits(), is_software)
+    }
+
+    fn samples(&mut self, settings: &Settings) -> Result<(u64, u64)> {
+        let key: SampleKey =
+            (settings.sampling, settings.sequence, settings.spp, settings.frame, settings.seed);
+        if let Some((kept, directions, by_azimuth)) = &self.samples
+            && *kept == key
+        {
+            return Ok((directions.address(), by_azimuth.address()));
+        }
+        let tables = SampleTables::of(settings);
+        let usage = BufferUsageFlags::STORAGE_BUFFER | BufferUsageFlags::SHADER_DEVICE_ADDRESS;
+        let directions = self.context.upload("sample directions", usage, &tables.directions)?;
+        let by_azimuth = self.context.upload("samples by azimuth", usage, &tables.by_azimuth)?;
+        let addresses = (directions.address(), by_azimuth.address());
+        self.samples = Some((key, directions, by_azimuth));
+        Ok(addresses)
+    }
+
+    fn lights(&mut self, view: &View) -> Result<u64> {
+        let lights: Vec<_> = view.lights.iter().map(constants::light).collect();
+        if let Some((kept, buffer)) = &self.lights
+            && *kept == lights
+        {
+            return Ok(buffer.address());
+        }
+        let usage = BufferUsageFlags::STORAGE_BUFFER | BufferUsageFlags::SHADER_DEVICE_ADDRESS;
+        let buffer = self.context.upload("lights", usage, &lights)?;
+        let address = buffer.address();
+        self.lights = Some((lights, buffer));
+        Ok(address)
+    }
+}
