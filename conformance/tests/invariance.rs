@@ -175,7 +175,7 @@ fn slanted_floors_do_not_shadow_themselves() {
                     camera_target: Auto::Value((rotation * Vec3::new(0.01, 0.0, 0.02)).into()),
                     ..Settings::default()
                 };
-                let renderer = Renderer::with_options(scene, options);
+                let renderer = Renderer::on_cpu(scene, options);
                 let frame =
                     renderer.render(&settings, Control::default()).unwrap_or_else(|error| panic!("{error}"));
                 let wrong = frame.ambient_raw.iter().filter(|v| v.x != 1.0).count();

@@ -18,6 +18,7 @@
 //! [`Renderer::query`] evaluates arbitrary points instead of pixels.
 #![forbid(unsafe_code)]
 
+mod backend;
 mod framing;
 mod renderer;
 mod resolve;
@@ -34,7 +35,9 @@ pub use ambray_core::{
 };
 pub use ambray_cpu::{BuildOptions, Isa, Quality, Width};
 pub use ambray_scene as scene;
-pub use renderer::{BuildStats, RenderError, Renderer};
+pub use ambray_vulkan as vulkan;
+pub use backend::{BackendChoice, RendererOptions};
+pub use renderer::{BuildStats, Machine, RenderError, Renderer};
 
 /// The code in the README compiles.
 #[cfg(doctest)]

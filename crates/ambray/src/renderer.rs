@@ -4,16 +4,21 @@ use std::{sync::Arc, time::Duration};
 
 use ambray_core::{
     control::Control,
-    frame::Frame,
+    frame::{Frame, FrameStats},
     query::{QueryPoint, QueryResult},
     settings::{Settings, SettingsError},
     view::View,
 };
-use ambray_cpu::{BackendError, BuildOptions, CpuBackend};
+use ambray_cpu::{BackendError, BuildOptions};
 use ambray_scene::Scene;
+use ambray_vulkan::{AccelerationStats, TraceMode, VulkanError};
 use glam::Vec3;
 
-use crate::resolve;
+use crate::{
+    BackendChoice, RendererOptions,
+    backend::{Backend, Backends, DeviceTrace},
+    resolve,
+};
 
 /// Why nothing was rendered.
 #[derive(Debug, thiserror::Error)]
@@ -44,6 +49,9 @@ pub enum RenderError {
     /// The threads could not be started.
     #[error("the threads could not be started: {0}")]
     Threads(String),
+    /// The Vulkan device could not be used, or failed.
+    #[error("{0}")]
+    Vulkan(VulkanError),
     /// [`Control::cancel`] was set.
     #[error("cancelled")]
     Cancelled,
@@ -54,6 +62,15 @@ impl From<BackendError> for RenderError {
         match error {
             BackendError::Cancelled(_) => Self::Cancelled,
             other => Self::Threads(other.to_string()),
+        }
+    }
+}
+
+impl From<VulkanError> for RenderError {
+    fn from(error: VulkanError) -> Self {
+        match error {
+            VulkanError::Cancelled(_) => Self::Cancelled,
+            other => Self::Vulkan(other),
         }
     }
 }
@@ -69,8 +86,25 @@ pub struct BuildStats {
     pub acceleration_bytes: u64,
     /// Wall time to build them.
     pub build_time: Duration,
-    /// Instruction set in use.
-    pub isa: &'static str,
+}
+
+/// Who renders.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Machine {
+    /// The processor.
+    Cpu {
+        /// Instruction set of the kernels.
+        isa: &'static str,
+        /// Why no device renders, where one was looked for.
+        reason: Option<String>,
+    },
+    /// A Vulkan device.
+    Vulkan {
+        /// Name of the device.
+        device: String,
+        /// How it traces rays.
+        trace: TraceMode,
+    },
 }
 
 /// A scene made ready for tracing.
@@ -79,17 +113,17 @@ pub struct Renderer {
     scene: Arc<Scene>,
     /// Box around the scene, found once.
     bounds: Option<(Vec3, Vec3)>,
-    backend: CpuBackend,
+    backends: Backends,
 }
 
 impl Renderer {
-    /// Builds the acceleration structures of `scene`.
+    /// Makes `scene` ready for the processor, which needs no driver and cannot fail.
     ///
     /// # Panics
     /// If indices within the scene are out of range; scenes that were loaded are sound.
     #[must_use]
     pub fn new(scene: Scene) -> Self {
-        Self::with_options(scene, BuildOptions::default())
+        Self::on_cpu(scene, BuildOptions::default())
     }
 
     /// As [`new`](Self::new), with a choice of effort, memory and instruction set.
@@ -97,10 +131,63 @@ impl Renderer {
     /// # Panics
     /// As [`new`](Self::new), and if the machine lacks the instruction set asked for.
     #[must_use]
-    pub fn with_options(scene: Scene, options: BuildOptions) -> Self {
+    pub fn on_cpu(scene: Scene, build: BuildOptions) -> Self {
+        let options = RendererOptions { backend: BackendChoice::Cpu, build, ..RendererOptions::default() };
+        match Self::open(scene, &options, Control::default()) {
+            Ok(renderer) => renderer,
+            Err(error) => unreachable!("the processor is always there: {error}"),
+        }
+    }
+
+    /// Makes `scene` ready for the backend that `options` ask for.
+    ///
+    /// # Errors
+    /// If a Vulkan device is asked for and cannot be used. By default the processor steps in, and [`machine`](Self::machine)
+    /// says why.
+    ///
+    /// # Panics
+    /// As [`on_cpu`](Self::on_cpu).
+    pub fn open(
+        scene: Scene,
+        options: &RendererOptions,
+        control: Control<'_>,
+    ) -> Result<Self, RenderError> {
         let scene = Arc::new(scene);
-        let backend = CpuBackend::new(Arc::clone(&scene), options);
-        Self { bounds: scene.bounds(), scene, backend }
+        let backends = Backends::new(Arc::clone(&scene), options, &control)?;
+        Ok(Self { bounds: scene.bounds(), scene, backends })
+    }
+
+    /// Who renders. May change from a device to the processor when the device fails.
+    #[must_use]
+    pub fn machine(&self) -> Machine {
+        match self.backends.current() {
+            Backend::Cpu(cpu) => Machine::Cpu {
+                isa: cpu.world().tracer().stats().isa.name(),
+                reason: self.backends.reason().map(str::to_owned),
+            },
+            Backend::Vulkan(vulkan) => Machine::Vulkan {
+                device: vulkan.context().report().name.clone(),
+                trace: vulkan.trace_mode(),
+            },
+        }
+    }
+
+    /// The acceleration structures of the Vulkan device in numbers; `None` on the processor.
+    #[must_use]
+    pub fn acceleration_stats(&self) -> Option<AccelerationStats> {
+        match self.backends.current() {
+            Backend::Vulkan(vulkan) => Some(*vulkan.acceleration()),
+            Backend::Cpu(_) => None,
+        }
+    }
+
+    /// What Vulkan's validation layer had to say so far; empty unless it was asked for.
+    #[must_use]
+    pub fn validation_messages(&self) -> Vec<String> {
+        match self.backends.current() {
+            Backend::Vulkan(vulkan) => vulkan.context().validation_messages(),
+            Backend::Cpu(_) => Vec::new(),
+        }
     }
 
     /// The scene.
@@ -112,13 +199,21 @@ impl Renderer {
     /// What building took.
     #[must_use]
     pub fn build_stats(&self) -> BuildStats {
-        let stats = self.backend.world().tracer().stats();
+        let (bytes, build_time) = match self.backends.current() {
+            Backend::Cpu(cpu) => {
+                let stats = cpu.world().tracer().stats();
+                (stats.bytes as u64, stats.build_time)
+            }
+            Backend::Vulkan(vulkan) => {
+                let stats = vulkan.acceleration();
+                (stats.bytes + stats.top_bytes, stats.build_time)
+            }
+        };
         BuildStats {
             triangles: self.scene.triangle_count(),
-            instances: self.scene.instances.len() as u64,
-            acceleration_bytes: stats.bytes as u64,
-            build_time: stats.build_time,
-            isa: stats.isa.name(),
+            instances: (self.scene.instances.len() + self.scene.shape_instances.len()) as u64,
+            acceleration_bytes: bytes,
+            build_time,
         }
     }
 
@@ -128,13 +223,34 @@ impl Renderer {
         if !errors.is_empty() {
             return Err(RenderError::Settings(errors));
         }
-        resolve::view(settings, &self.scene, self.bounds, self.backend.world())
+        self.stepping_in(|backend| match backend {
+            Backend::Cpu(cpu) => resolve::view(settings, &self.scene, self.bounds, cpu.world()),
+            Backend::Vulkan(vulkan) => {
+                let trace = DeviceTrace::new(vulkan);
+                let view = resolve::view(settings, &self.scene, self.bounds, &trace);
+                trace.finish()?;
+                view
+            }
+        })
     }
 
-    /// Renders a frame. The same settings and scene give the same frame, bit for bit, for any number of threads.
+    /// Renders a frame. On the processor the same settings and scene give the same frame, bit for bit, for any number of
+    /// threads; devices round differently.
     pub fn render(&self, settings: &Settings, control: Control<'_>) -> Result<Frame, RenderError> {
         let view = self.view(settings)?;
-        Ok(self.backend.render(settings, &view, control)?)
+        self.stepping_in(|backend| match backend {
+            Backend::Cpu(cpu) => Ok(cpu.render(settings, &view, control)?),
+            Backend::Vulkan(vulkan) => Ok(vulkan.render(settings, &view, control)?),
+        })
+    }
+
+    /// Renders a frame and throws it away, without copying it from a device: what it took is what counts.
+    pub fn measure(&self, settings: &Settings, control: Control<'_>) -> Result<FrameStats, RenderError> {
+        let view = self.view(settings)?;
+        self.stepping_in(|backend| match backend {
+            Backend::Cpu(cpu) => Ok(cpu.render(settings, &view, control)?.stats),
+            Backend::Vulkan(vulkan) => Ok(vulkan.measure(settings, &view, control)?),
+        })
     }
 
     /// Evaluates ambient light at `points`; result `i` belongs to point `i`.
@@ -148,7 +264,24 @@ impl Renderer {
         for (index, point) in points.iter().enumerate() {
             check_point(point).map_err(|reason| RenderError::Point { index, reason })?;
         }
-        Ok(self.backend.query(settings, &view, points, control)?)
+        self.stepping_in(|backend| match backend {
+            Backend::Cpu(cpu) => Ok(cpu.query(settings, &view, points, control)?),
+            Backend::Vulkan(vulkan) => Ok(vulkan.query(settings, &view, points, control)?),
+        })
+    }
+
+    /// Runs `work` on the current backend, and once more on the processor if the device fails and that is wanted.
+    fn stepping_in<T>(
+        &self,
+        work: impl Fn(Backend<'_>) -> Result<T, RenderError>,
+    ) -> Result<T, RenderError> {
+        match work(self.backends.current()) {
+            Err(RenderError::Vulkan(error)) => {
+                self.backends.step_in(error)?;
+                work(self.backends.current())
+            }
+            done => done,
+        }
     }
 }
 

@@ -1,0 +1,184 @@
+//! Which backend renders, and what happens when a device fails.
+
+use std::{
+    str::FromStr,
+    sync::{Arc, Mutex, OnceLock, PoisonError},
+};
+
+use ambray_core::{
+    control::Control,
+    trace::{Hit, Ray, Trace},
+};
+use ambray_cpu::{BuildOptions, CpuBackend};
+use ambray_scene::Scene;
+use ambray_vulkan::{
+    AccelerationOptions, Context, DeviceOptions, TraceMode, VulkanBackend, VulkanError, VulkanOptions,
+};
+
+/// Who renders.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum BackendChoice {
+    /// A graphics card that traces rays, if there is one; else the processor.
+    #[default]
+    Auto,
+    /// A Vulkan device. An error if there is none.
+    Vulkan,
+    /// The processor.
+    Cpu,
+}
+
+impl FromStr for BackendChoice {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        match name {
+            "auto" => Ok(Self::Auto),
+            "vulkan" => Ok(Self::Vulkan),
+            "cpu" => Ok(Self::Cpu),
+            _ => Err("expected auto, vulkan or cpu".to_owned()),
+        }
+    }
+}
+
+/// How a scene is made ready. None of it changes a picture beyond rounding.
+#[derive(Clone, Debug, Default)]
+pub struct RendererOptions {
+    /// Who renders.
+    pub backend: BackendChoice,
+    /// Trees of the CPU backend.
+    pub build: BuildOptions,
+    /// Which Vulkan device.
+    pub device: DeviceOptions,
+    /// How it traces rays.
+    pub trace: TraceMode,
+    /// Its acceleration structures.
+    pub acceleration: AccelerationOptions,
+}
+
+/// The backends of a renderer. The CPU backend is made when it is first needed.
+#[derive(Debug)]
+pub(crate) struct Backends {
+    scene: Arc<Scene>,
+    build: BuildOptions,
+    vulkan: Option<VulkanBackend>,
+    cpu: OnceLock<CpuBackend>,
+    /// Whether the processor steps in for a device that fails.
+    steps_in: bool,
+    /// Why the processor renders although a device might.
+    reason: OnceLock<String>,
+}
+
+/// The backend in use.
+#[derive(Debug)]
+pub(crate) enum Backend<'a> {
+    Vulkan(&'a VulkanBackend),
+    Cpu(&'a CpuBackend),
+}
+
+impl Backends {
+    /// Makes `scene` ready.
+    pub(crate) fn new(
+        scene: Arc<Scene>,
+        options: &RendererOptions,
+        control: &Control<'_>,
+    ) -> Result<Self, VulkanError> {
+        let mut backends = Self {
+            scene,
+            build: options.build,
+            vulkan: None,
+            cpu: OnceLock::new(),
+            steps_in: options.backend == BackendChoice::Auto,
+            reason: OnceLock::new(),
+        };
+        if options.backend != BackendChoice::Cpu {
+            match vulkan(&backends.scene, options, control) {
+                Ok(backend) => backends.vulkan = Some(backend),
+                Err(error) => backends.step_in(error)?,
+            }
+        }
+        if backends.vulkan.is_none() {
+            backends.cpu();
+        }
+        Ok(backends)
+    }
+
+    /// Who renders now.
+    pub(crate) fn current(&self) -> Backend<'_> {
+        match &self.vulkan {
+            Some(backend) if self.reason.get().is_none() => Backend::Vulkan(backend),
+            _ => Backend::Cpu(self.cpu()),
+        }
+    }
+
+    /// Why the processor renders although a device might.
+    pub(crate) fn reason(&self) -> Option<&str> {
+        self.reason.get().map(String::as_str)
+    }
+
+    /// Lets the processor take over after `error` of the device, if that is wanted; else the error comes back.
+    pub(crate) fn step_in(&self, error: VulkanError) -> Result<(), VulkanError> {
+        if !self.steps_in || matches!(error, VulkanError::Cancelled(_)) {
+            return Err(error);
+        }
+        log::info!("rendering on the processor: {error}");
+        // The first reason counts: a race of two calls that fail alike.
+        let _ = self.reason.set(error.to_string());
+        Ok(())
+    }
+
+    fn cpu(&self) -> &CpuBackend {
+        self.cpu.get_or_init(|| CpuBackend::new(Arc::clone(&self.scene), self.build))
+    }
+}
+
+fn vulkan(
+    scene: &Arc<Scene>,
+    options: &RendererOptions,
+    control: &Control<'_>,
+) -> Result<VulkanBackend, VulkanError> {
+    // A device that is really the processor is slower than the CPU backend, but better than an error.
+    let software = options.device.software || options.backend == BackendChoice::Vulkan;
+    let context = Context::new(&DeviceOptions { software, ..options.device.clone() })?;
+    let options = VulkanOptions { trace: options.trace, acceleration: options.acceleration };
+    VulkanBackend::new(&context, scene, options, control)
+}
+
+/// A device as the method's tracer: the first failure is kept, and everything misses from then on.
+pub(crate) struct DeviceTrace<'a> {
+    backend: &'a VulkanBackend,
+    failure: Mutex<Option<VulkanError>>,
+}
+
+impl<'a> DeviceTrace<'a> {
+    pub(crate) fn new(backend: &'a VulkanBackend) -> Self {
+        Self { backend, failure: Mutex::default() }
+    }
+
+    /// The first failure, if any.
+    pub(crate) fn finish(self) -> Result<(), VulkanError> {
+        self.failure.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(Ok(()), Err)
+    }
+
+    fn keep<T>(&self, result: Result<Vec<T>, VulkanError>, into: &mut [T], missed: T)
+    where
+        T: Copy,
+    {
+        match result {
+            Ok(values) => into.copy_from_slice(&values),
+            Err(error) => {
+                into.fill(missed);
+                self.failure.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+            }
+        }
+    }
+}
+
+impl Trace for DeviceTrace<'_> {
+    fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit]) {
+        self.keep(self.backend.closest_hits(rays), hits, Hit::MISS);
+    }
+
+    fn any_hits(&self, rays: &[Ray], blocked: &mut [bool]) {
+        self.keep(self.backend.any_hits(rays), blocked, false);
+    }
+}
