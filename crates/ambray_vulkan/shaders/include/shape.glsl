@@ -3,11 +3,7 @@
 #ifndef SHAPE_GLSL
 #define SHAPE_GLSL
 
-const uint SHAPE_SPHERE = 0u;
-const uint SHAPE_BOX = 1u;
-const uint SHAPE_CAPSULE = 2u;
-const uint SHAPE_CYLINDER = 3u;
-const uint SHAPE_FIELD = 4u;
+#include "scene.glsl"
 
 // Stands for infinity, which shaders need not have.
 const float SHAPE_FAR = 3.402823466e38;
