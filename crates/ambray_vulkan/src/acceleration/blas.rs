@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::input::{Input, Primitives, ShapeBox};
+use super::input::{Input, Primitives};
+use super::size_queries::SizeQueries;
 use super::structure::{Scratch, Structure};
 use crate::commands::Work;
 use crate::error::{Result, VulkanError};
@@ -229,53 +230,6 @@ impl<'c> Builder<'c> {
     }
 }
 
-impl Primitives {
-    /// Number of primitives, and of vertices.
-    fn counts(&self) -> (u64, u64) {
-        match self {
-            Self::Triangles { positions, triangles } => (triangles.len() as u64, positions.len() as u64),
-            Self::Boxes(boxes) => (boxes.len() as u64, 0),
-        }
-    }
-
-    fn bytes(&self) -> u64 {
-        match self {
-            Self::Triangles { positions, triangles } => 12 * (positions.len() + triangles.len()) as u64,
-            Self::Boxes(boxes) => size_of_val(&boxes[..]) as u64,
-        }
-    }
-
-    /// The geometry with its data at `first` (vertices or boxes) and `second` (indices).
-    fn geometry(
-        &self,
-        first: vk::DeviceAddress,
-        second: vk::DeviceAddress,
-        opaque: bool,
-    ) -> vk::AccelerationStructureGeometryKHR<'static> {
-        let at = |device_address| vk::DeviceOrHostAddressConstKHR { device_address };
-        let (kind, data) = match self {
-            Self::Triangles { positions, .. } => {
-                let triangles = vk::AccelerationStructureGeometryTrianglesDataKHR::default()
-                    .vertex_format(vk::Format::R32G32B32_SFLOAT)
-                    .vertex_data(at(first))
-                    .vertex_stride(12)
-                    .max_vertex(positions.len().saturating_sub(1) as u32)
-                    .index_type(vk::IndexType::UINT32)
-                    .index_data(at(second));
-                (vk::GeometryTypeKHR::TRIANGLES, vk::AccelerationStructureGeometryDataKHR { triangles })
-            }
-            Self::Boxes(_) => {
-                let aabbs = vk::AccelerationStructureGeometryAabbsDataKHR::default()
-                    .data(at(first))
-                    .stride(size_of::<ShapeBox>() as u64);
-                (vk::GeometryTypeKHR::AABBS, vk::AccelerationStructureGeometryDataKHR { aabbs })
-            }
-        };
-        let flags = if opaque { vk::GeometryFlagsKHR::OPAQUE } else { vk::GeometryFlagsKHR::empty() };
-        vk::AccelerationStructureGeometryKHR::default().geometry_type(kind).geometry(data).flags(flags)
-    }
-}
-
 fn build_info<'a>(
     geometry: &'a [vk::AccelerationStructureGeometryKHR<'a>],
     flags: vk::BuildAccelerationStructureFlagsKHR,
@@ -319,62 +273,5 @@ impl Uploaded {
             second: context.upload("vertex numbers of builds", usage, &second)?,
             offsets,
         })
-    }
-}
-
-/// Asks structures for the size they need.
-struct SizeQueries<'c> {
-    context: &'c Context,
-    pool: vk::QueryPool,
-    count: u32,
-}
-
-impl<'c> SizeQueries<'c> {
-    const KIND: vk::QueryType = vk::QueryType::ACCELERATION_STRUCTURE_COMPACTED_SIZE_KHR;
-
-    fn new(context: &'c Context, count: u32) -> Result<Self> {
-        let info = vk::QueryPoolCreateInfo::default().query_type(Self::KIND).query_count(count.max(1));
-        // SAFETY: the device is alive; the pool is destroyed when dropped.
-        let pool = unsafe { context.device.create_query_pool(&info, None) }
-            .map_err(VulkanError::of("vkCreateQueryPool"))?;
-        Ok(Self { context, pool, count })
-    }
-
-    fn record(&self, buffer: vk::CommandBuffer, structures: &[vk::AccelerationStructureKHR]) {
-        assert_eq!(structures.len(), self.count as usize);
-        if self.count == 0 {
-            return;
-        }
-        // SAFETY: the buffer is being recorded, the pool has a query for each structure, and all are built with the flag
-        // for it, with a barrier behind.
-        unsafe {
-            self.context.device.cmd_reset_query_pool(buffer, self.pool, 0, self.count);
-            self.context.acceleration.cmd_write_acceleration_structures_properties(
-                buffer,
-                structures,
-                Self::KIND,
-                self.pool,
-                0,
-            );
-        }
-    }
-
-    /// The answers, once the commands have run.
-    fn read(&self) -> Result<Vec<u64>> {
-        let mut sizes = vec![0_u64; self.count as usize];
-        if self.count > 0 {
-            let flags = vk::QueryResultFlags::TYPE_64 | vk::QueryResultFlags::WAIT;
-            // SAFETY: the queries were written by commands that have run.
-            unsafe { self.context.device.get_query_pool_results(self.pool, 0, &mut sizes, flags) }
-                .map_err(VulkanError::of("vkGetQueryPoolResults"))?;
-        }
-        Ok(sizes)
-    }
-}
-
-impl Drop for SizeQueries<'_> {
-    fn drop(&mut self) {
-        // SAFETY: commands that used the pool have run: recording and waiting is one call.
-        unsafe { self.context.device.destroy_query_pool(self.pool, None) };
     }
 }

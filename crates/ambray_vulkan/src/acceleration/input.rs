@@ -1,6 +1,7 @@
 //! What a bottom-level structure is built from.
 
 use ambray_scene::Scene;
+use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use glam::{Affine3A, Vec3};
 
@@ -96,5 +97,53 @@ impl Input {
         let refs = order.iter().map(|&i| [name(i), 0]).collect();
         let bounds = all.into_iter().fold(Bounds::EMPTY, Bounds::union);
         Self { primitives: Primitives::Boxes(boxes), refs, bounds, dropped: 0 }
+    }
+}
+
+impl Primitives {
+    /// Number of primitives, and of vertices.
+    pub(super) fn counts(&self) -> (u64, u64) {
+        match self {
+            Self::Triangles { positions, triangles } => (triangles.len() as u64, positions.len() as u64),
+            Self::Boxes(boxes) => (boxes.len() as u64, 0),
+        }
+    }
+
+    /// Size on the device, bytes.
+    pub(super) fn bytes(&self) -> u64 {
+        match self {
+            Self::Triangles { positions, triangles } => 12 * (positions.len() + triangles.len()) as u64,
+            Self::Boxes(boxes) => size_of_val(&boxes[..]) as u64,
+        }
+    }
+
+    /// The geometry with its data at `first` (vertices or boxes) and `second` (indices).
+    pub(super) fn geometry(
+        &self,
+        first: vk::DeviceAddress,
+        second: vk::DeviceAddress,
+        opaque: bool,
+    ) -> vk::AccelerationStructureGeometryKHR<'static> {
+        let at = |device_address| vk::DeviceOrHostAddressConstKHR { device_address };
+        let (kind, data) = match self {
+            Self::Triangles { positions, .. } => {
+                let triangles = vk::AccelerationStructureGeometryTrianglesDataKHR::default()
+                    .vertex_format(vk::Format::R32G32B32_SFLOAT)
+                    .vertex_data(at(first))
+                    .vertex_stride(12)
+                    .max_vertex(positions.len().saturating_sub(1) as u32)
+                    .index_type(vk::IndexType::UINT32)
+                    .index_data(at(second));
+                (vk::GeometryTypeKHR::TRIANGLES, vk::AccelerationStructureGeometryDataKHR { triangles })
+            }
+            Self::Boxes(_) => {
+                let aabbs = vk::AccelerationStructureGeometryAabbsDataKHR::default()
+                    .data(at(first))
+                    .stride(size_of::<ShapeBox>() as u64);
+                (vk::GeometryTypeKHR::AABBS, vk::AccelerationStructureGeometryDataKHR { aabbs })
+            }
+        };
+        let flags = if opaque { vk::GeometryFlagsKHR::OPAQUE } else { vk::GeometryFlagsKHR::empty() };
+        vk::AccelerationStructureGeometryKHR::default().geometry_type(kind).geometry(data).flags(flags)
     }
 }

@@ -13,6 +13,7 @@ mod input;
 mod overlap;
 mod plan;
 mod rays;
+mod size_queries;
 mod sort;
 mod stats;
 mod structure;
@@ -123,7 +124,8 @@ pub struct Acceleration {
 impl Acceleration {
     /// Builds the structures of `scene`, and waits for them. `opaque` says of each mesh whether every ray sees all of it.
     ///
-    /// Triangles and placements that no ray can hit are dropped, as the CPU backend does.
+    /// Triangles and placements that no ray can hit are dropped, as the CPU backend does; of meshes that deform, those that
+    /// no ray can hit in their own space.
     ///
     /// # Panics
     /// If an index in the scene is out of range.

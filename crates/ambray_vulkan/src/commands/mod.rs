@@ -1,11 +1,14 @@
 //! Commands for the device: recording, ordering, submitting, waiting and timing.
 
+mod work;
+
 use std::marker::PhantomData;
 use std::sync::Arc;
 use std::time::Duration;
 
 use ash::vk;
 
+pub use self::work::Work;
 use crate::error::{Result, VulkanError};
 use crate::{Buffer, Context};
 
@@ -19,55 +22,6 @@ pub struct Timing {
     pub label: &'static str,
     /// How long it took on the device; `None` where the queue has no timestamps.
     pub duration: Option<Duration>,
-}
-
-/// A kind of work that touches memory: what a barrier orders.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Work {
-    /// The host writes mapped memory.
-    HostWrite,
-    /// The host reads mapped memory.
-    HostRead,
-    /// Copies and fills.
-    Transfer,
-    /// Acceleration structures are built, copied, or asked for their size.
-    BuildStructure,
-    /// A ray-tracing pipeline runs. Nothing where the device has none.
-    TraceRays,
-    /// A compute shader runs, with ray queries where the device has them.
-    Compute,
-    /// Arguments of indirect calls are read.
-    Indirect,
-    /// All of the above on the device: for places that are not worth a thought.
-    Everything,
-}
-
-impl Work {
-    /// Stages that do the work, and what they may do there.
-    fn mask(self, pipelines: bool, queries: bool) -> (vk::PipelineStageFlags, vk::AccessFlags) {
-        use vk::{AccessFlags as A, PipelineStageFlags as S};
-        let shader = A::SHADER_READ | A::SHADER_WRITE | A::UNIFORM_READ;
-        match self {
-            Self::HostWrite => (S::HOST, A::HOST_WRITE),
-            Self::HostRead => (S::HOST, A::HOST_READ),
-            Self::Transfer => (S::TRANSFER, A::TRANSFER_READ | A::TRANSFER_WRITE),
-            // Builds read their vertices, indices, boxes and instances as shaders do.
-            Self::BuildStructure => (
-                S::ACCELERATION_STRUCTURE_BUILD_KHR,
-                A::ACCELERATION_STRUCTURE_READ_KHR | A::ACCELERATION_STRUCTURE_WRITE_KHR | A::SHADER_READ,
-            ),
-            // Shader binding tables are read as shaders read.
-            Self::TraceRays if pipelines => {
-                (S::RAY_TRACING_SHADER_KHR, shader | A::ACCELERATION_STRUCTURE_READ_KHR)
-            }
-            Self::TraceRays => (S::TOP_OF_PIPE, A::empty()),
-            // Without ray queries a compute shader may not be said to read structures.
-            Self::Compute if queries => (S::COMPUTE_SHADER, shader | A::ACCELERATION_STRUCTURE_READ_KHR),
-            Self::Compute => (S::COMPUTE_SHADER, shader),
-            Self::Indirect => (S::DRAW_INDIRECT, A::INDIRECT_COMMAND_READ),
-            Self::Everything => (S::ALL_COMMANDS, A::MEMORY_READ | A::MEMORY_WRITE),
-        }
-    }
 }
 
 /// A command buffer with what is needed to submit it and wait for it, to be used again and again.
