@@ -283,7 +283,7 @@ impl Cubic {
             let q = if c2 < 0.0 { root - c2 } else { -c2 - root };
             let first = if q == 0.0 { 1.0 } else { c1 / q };
             let second = if a == 0.0 { 1.0 } else { q / a };
-            extrema = [first.min(second).max(0.0).min(1.0), first.max(second).max(0.0).min(1.0)];
+            extrema = [first.min(second).clamp(0.0, 1.0), first.max(second).clamp(0.0, 1.0)];
         }
         let mut low = 0.0;
         for high in [extrema[0], extrema[1], 1.0] {
