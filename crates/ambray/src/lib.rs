@@ -30,7 +30,7 @@ pub use ambray_core::{
     frame::{Frame, FrameStats, GBufferPixel, RayCounts, StageTimes},
     light,
     query::{QueryPoint, QueryResult},
-    settings,
+    settings, shape,
     view::View,
 };
 pub use ambray_cpu::{BuildOptions, Isa, Quality, Width};

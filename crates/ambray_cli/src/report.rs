@@ -75,8 +75,12 @@ pub struct SceneReport {
     pub triangles: u64,
     /// Placed meshes.
     pub instances: u64,
+    /// Placed shapes.
+    pub shape_instances: u64,
     /// Distinct meshes.
     pub meshes: usize,
+    /// Distinct shapes.
+    pub shapes: usize,
     /// Materials.
     pub materials: usize,
     /// Images.
@@ -101,7 +105,9 @@ impl SceneReport {
             source: source.path.clone(),
             triangles: scene.triangle_count(),
             instances: scene.instances.len() as u64,
+            shape_instances: scene.shape_instances.len() as u64,
             meshes: scene.meshes.len(),
+            shapes: scene.shapes.len(),
             materials: scene.materials.len(),
             images: scene.images.len(),
             lights: scene.lights.len(),
@@ -335,8 +341,12 @@ impl RenderReport {
 /// Scene and acceleration structures in a line.
 #[must_use]
 pub fn scene_line(scene: &SceneReport, build: &BuildReport) -> String {
+    let shapes = match scene.shape_instances {
+        0 => String::new(),
+        count => format!(", {}", counted(count, "shape")),
+    };
     format!(
-        "scene    {}: {}, {}; loaded in {:.0} ms, built in {:.0} ms, {}\n",
+        "scene    {}: {}, {}{shapes}; loaded in {:.0} ms, built in {:.0} ms, {}\n",
         scene.source,
         counted(scene.triangles, "triangle"),
         counted(scene.instances, "instance"),

@@ -6,8 +6,9 @@ use ambray::{
     Renderer,
     camera::Projection,
     light::Light,
-    scene::{AlphaMode, Material, Scene},
+    scene::{AlphaMode, Material, MaterialKind, Scene},
     settings::Settings,
+    shape::Shape,
 };
 use glam::Vec3;
 use serde::Serialize;
@@ -67,6 +68,7 @@ struct SceneInfo {
 struct Contents {
     bounds: Option<Bounds>,
     meshes: Vec<MeshInfo>,
+    shapes: Vec<ShapeInfo>,
     materials: Vec<MaterialInfo>,
     images: Vec<ImageInfo>,
     lights: Vec<LightInfo>,
@@ -93,8 +95,17 @@ struct MeshInfo {
 }
 
 #[derive(Debug, Serialize)]
+struct ShapeInfo {
+    kind: &'static str,
+    /// Size of its box, object units.
+    size: [f32; 3],
+    instances: usize,
+}
+
+#[derive(Debug, Serialize)]
 struct MaterialInfo {
     name: String,
+    kind: &'static str,
     alpha_mode: &'static str,
     alpha_cutoff: Option<f32>,
     base_color: [f32; 4],
@@ -167,6 +178,7 @@ impl Contents {
         Self {
             bounds: scene.bounds().map(|(low, high)| Bounds { low: low.to_array(), high: high.to_array() }),
             meshes: meshes.collect(),
+            shapes: shapes(scene),
             materials: scene.materials.iter().map(material).collect(),
             images: images.collect(),
             lights: scene.lights.iter().map(light).collect(),
@@ -175,6 +187,25 @@ impl Contents {
             asked_ambient: scene.ambient.map(|ambient| ambient.to_array()),
         }
     }
+}
+
+fn shapes(scene: &Scene) -> Vec<ShapeInfo> {
+    let mut instances = vec![0; scene.shapes.len()];
+    for instance in &scene.shape_instances {
+        instances[instance.shape as usize] += 1;
+    }
+    let info = |(shape, instances): (&Shape, usize)| {
+        let (low, high) = shape.bounds();
+        let kind = match shape {
+            Shape::Sphere { .. } => "sphere",
+            Shape::Box { .. } => "box",
+            Shape::Capsule { .. } => "capsule",
+            Shape::Cylinder { .. } => "cylinder",
+            Shape::Field(_) => "field",
+        };
+        ShapeInfo { kind, size: (high - low).to_array(), instances }
+    };
+    scene.shapes.iter().zip(instances).map(info).collect()
 }
 
 fn material(material: &Material) -> MaterialInfo {
@@ -188,8 +219,15 @@ fn material(material: &Material) -> MaterialInfo {
         ("normal", material.normal_texture.is_some()),
         ("emission", material.emission_texture.is_some()),
     ];
+    let kind = match material.kind() {
+        MaterialKind::Lit => "lit",
+        MaterialKind::Unlit => "unlit",
+        MaterialKind::Emissive => "emissive",
+        MaterialKind::Checker => "checker",
+    };
     MaterialInfo {
         name: material.name.clone(),
+        kind,
         alpha_mode,
         alpha_cutoff,
         base_color: material.base_color.to_array(),
@@ -219,7 +257,7 @@ fn light(light: &Light) -> LightInfo {
 
 impl SceneInfo {
     fn text(&self) -> String {
-        let Contents { bounds, meshes, materials, images, lights, cameras, .. } = &self.contents;
+        let Contents { bounds, meshes, shapes, materials, images, lights, cameras, .. } = &self.contents;
         let mut text = report::scene_line(&self.scene, &self.build);
         let mut line = |name: &str, rest: String| {
             let _ = writeln!(text, "{name:<9}{rest}"); // writing to a string cannot fail
@@ -242,6 +280,18 @@ impl SceneInfo {
             format!("{}: {triangles} triangles{}", named(&mesh.name), shared(mesh))
         };
         entries(meshes, mesh).for_each(|entry| line("", entry));
+        if !shapes.is_empty() {
+            line("shapes", grouped(shapes.len() as u64));
+            let shape = |shape: &ShapeInfo| {
+                let count = if shape.instances == 1 {
+                    String::new()
+                } else {
+                    format!(" x {} instances", shape.instances)
+                };
+                format!("{}: size {}{count}", shape.kind, triple(shape.size))
+            };
+            entries(shapes, shape).for_each(|entry| line("", entry));
+        }
         line("materials", format!(" {}", materials.len()));
         entries(materials, material_line).for_each(|entry| line("", entry));
         let texels: u64 = images.iter().map(|i| u64::from(i.width) * u64::from(i.height)).sum();
@@ -276,6 +326,7 @@ fn material_line(material: &MaterialInfo) -> String {
     let mut words = vec![material.alpha_mode];
     words.extend(material.is_emissive.then_some("emissive"));
     words.extend(material.unlit.then_some("unlit"));
+    words.extend((material.kind == "checker").then_some("checker"));
     words.extend(material.double_sided.then_some("double-sided"));
     let textures = match material.textures.as_slice() {
         [] => String::new(),
