@@ -19,6 +19,11 @@ pub fn load(content: &[u8], extension: &str) {
                 assert!((instance.mesh as usize) < scene.meshes.len());
                 assert!(instance.world_from_object.is_finite());
             }
+            for instance in &scene.shape_instances {
+                assert!((instance.shape as usize) < scene.shapes.len());
+                assert!((instance.material as usize) < scene.materials.len());
+                assert!(instance.world_from_object.is_finite());
+            }
         }
         Err(error) => assert_eq!(error.to_string().lines().count(), 1, "{error}"),
     }
