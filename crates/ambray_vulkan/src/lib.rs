@@ -2,9 +2,11 @@
 
 mod acceleration;
 mod backend;
+mod bandwidth;
 mod commands;
 mod constants;
 mod context;
+pub mod cost;
 mod error;
 pub mod layout;
 mod memory;
@@ -17,6 +19,8 @@ mod schedule;
 mod shaders;
 mod state;
 mod tables;
+#[doc(hidden)]
+pub mod testing;
 
 pub use acceleration::{
     Acceleration, AccelerationOptions, AccelerationStats, Bounds, Culling, GeometryKind, Grouping, Placement,
@@ -24,7 +28,9 @@ pub use acceleration::{
 };
 pub use backend::{VulkanBackend, VulkanOptions};
 pub use commands::{CommandSet, Recorder, Timing, Work};
-pub use context::{Capability, Context, DeviceKind, DeviceOptions, DeviceReport, Limits, Live, Need, probe};
+pub use context::{
+    Capability, Context, DeviceKind, DeviceOptions, DeviceReport, Limits, Live, Need, VALIDATION_LOG, choose, probe,
+};
 pub use error::{MemorySide, Result, VulkanError};
 pub use memory::{Buffer, Location};
 pub use pipeline::TraceMode;

@@ -4,8 +4,9 @@ use super::DeviceOptions;
 use super::probe::{DeviceKind, DeviceReport};
 use crate::error::{Result, VulkanError};
 
-/// Index of the device that `options` mean: the named one, else the best usable one.
-pub(super) fn choose(devices: &[DeviceReport], options: &DeviceOptions) -> Result<usize> {
+/// Index in `devices`, all that [`probe`](super::probe()) lists, of the device that `options` mean: the named one, else the
+/// best usable one.
+pub fn choose(devices: &[DeviceReport], options: &DeviceOptions) -> Result<usize> {
     let best = |allowed: &dyn Fn(&DeviceReport) -> bool| {
         (0..devices.len()).filter(|&i| allowed(&devices[i])).min_by_key(|&i| (devices[i].kind, i))
     };
@@ -23,7 +24,10 @@ pub(super) fn choose(devices: &[DeviceReport], options: &DeviceOptions) -> Resul
     let is_named = |d: &DeviceReport| !part.is_empty() && d.name.to_lowercase().contains(&part);
     match best(&|d| is_named(d) && d.is_usable()).or_else(|| best(&is_named)) {
         Some(index) => usable(devices, index),
-        None => Err(VulkanError::UnknownDevice { asked: asked.to_owned(), known: list(devices, |_| None) }),
+        None => {
+            let known = if devices.is_empty() { "none".to_owned() } else { list(devices, |_| None) };
+            Err(VulkanError::UnknownDevice { asked: asked.to_owned(), known })
+        }
     }
 }
 

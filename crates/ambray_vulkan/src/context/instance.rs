@@ -12,6 +12,9 @@ const VALIDATION_LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
 /// Most messages that are kept: a mistake in a loop must not fill the memory.
 const MOST_MESSAGES: usize = 1000;
 
+/// Target of the log records that are messages of the validation layer.
+pub const VALIDATION_LOG: &str = "ambray_vulkan::validation";
+
 /// What the validation layer said.
 type Messages = Mutex<Vec<String>>;
 
@@ -171,7 +174,8 @@ unsafe extern "system" fn collect(
         (one_line(&text), &*messages.cast::<Messages>())
     };
     let is_error = severity.contains(vk::DebugUtilsMessageSeverityFlagsEXT::ERROR);
-    log::log!(if is_error { log::Level::Error } else { log::Level::Warn }, "{text}");
+    let level = if is_error { log::Level::Error } else { log::Level::Warn };
+    log::log!(target: VALIDATION_LOG, level, "{text}");
     let mut messages = messages.lock().unwrap_or_else(PoisonError::into_inner);
     if messages.len() < MOST_MESSAGES {
         messages.push(text);

@@ -13,7 +13,9 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use ash::{ext, khr, vk};
 use gpu_allocator::vulkan::Allocator;
 
+pub use self::choose::choose;
 use self::instance::Instance;
+pub use self::instance::VALIDATION_LOG;
 pub use self::limits::Limits;
 pub use self::probe::{Capability, DeviceKind, DeviceReport, Need, probe};
 use crate::error::Result;
