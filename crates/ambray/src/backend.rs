@@ -120,7 +120,13 @@ impl Backends {
         if !self.steps_in || matches!(error, VulkanError::Cancelled(_)) {
             return Err(error);
         }
-        log::info!("rendering on the processor: {error}");
+        let is_absent = matches!(
+            error,
+            VulkanError::NoLoader { .. } | VulkanError::NoDriver | VulkanError::NoDevice { .. }
+        );
+        // Nobody expects anything of a device that is not there; one that fails is news.
+        let level = if is_absent { log::Level::Info } else { log::Level::Warn };
+        log::log!(level, "rendering on the processor: {error}");
         // The first reason counts: a race of two calls that fail alike.
         let _ = self.reason.set(error.to_string());
         Ok(())

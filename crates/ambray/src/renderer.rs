@@ -11,7 +11,7 @@ use ambray_core::{
 };
 use ambray_cpu::{BackendError, BuildOptions};
 use ambray_scene::Scene;
-use ambray_vulkan::{AccelerationStats, TraceMode, VulkanError};
+use ambray_vulkan::{AccelerationStats, DeviceReport, TraceMode, VulkanError};
 use glam::Vec3;
 
 use crate::{
@@ -169,6 +169,27 @@ impl Renderer {
                 device: vulkan.context().report().name.clone(),
                 trace: vulkan.trace_mode(),
             },
+        }
+    }
+
+    /// The Vulkan device that renders; `None` on the processor.
+    #[must_use]
+    pub fn device(&self) -> Option<&DeviceReport> {
+        match self.backends.current() {
+            Backend::Vulkan(vulkan) => Some(vulkan.context().report()),
+            Backend::Cpu(_) => None,
+        }
+    }
+
+    /// Bytes a second that a large copy within the memory of the Vulkan device reads and writes, measured; `None` on the
+    /// processor and where the device has no clock.
+    ///
+    /// # Errors
+    /// If the device fails. The processor does not step in.
+    pub fn copy_bandwidth(&self) -> Result<Option<f64>, RenderError> {
+        match self.backends.current() {
+            Backend::Vulkan(vulkan) => Ok(vulkan.copy_bandwidth()?),
+            Backend::Cpu(_) => Ok(None),
         }
     }
 
