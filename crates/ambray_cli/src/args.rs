@@ -1,5 +1,7 @@
 //! The command line as it was typed: parsed and checked for form, without side effects.
 
+mod backend;
+
 use std::{any::TypeId, ffi::OsString, fmt::Display, path::PathBuf, str::FromStr};
 
 use ambray::{
@@ -11,6 +13,8 @@ use clap::{
     builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
 };
 
+pub use backend::{Backend, BackendArgs, DeviceArgs, Grouping, GroupingArgs, Trace};
+
 const EXAMPLES: &str = "\
 Examples:
   ambray                                       render the built-in atrium to ambray.png
@@ -21,6 +25,7 @@ Examples:
   ambray query scene.glb --points points.csv -o openness.csv
   ambray bench --frames 200 --json
   ambray info scene.glb
+  ambray info --devices                        list the Vulkan devices
 
 Exit codes: 0 done, 2 error, 130 interrupted.";
 
@@ -109,7 +114,7 @@ pub struct SettingsArgs {
 /// How to run.
 #[derive(Clone, Copy, Debug, Args)]
 pub struct RunArgs {
-    /// Number of threads, 0 for all cores; the result does not depend on it
+    /// Number of threads of the CPU backend, 0 for all cores; the result does not depend on it
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = |text: &str| whole::<u16>(text, 0, 1024))]
     pub threads: u16,
     /// No progress bar and no report; warnings and errors are still shown on stderr
@@ -139,6 +144,9 @@ pub struct RenderArgs {
     /// How to run.
     #[command(flatten)]
     pub run: RunArgs,
+    /// Who renders.
+    #[command(flatten)]
+    pub backend: BackendArgs,
     /// Settings.
     #[command(flatten)]
     pub settings: SettingsArgs,
@@ -165,6 +173,9 @@ pub struct QueryArgs {
     /// How to run.
     #[command(flatten)]
     pub run: RunArgs,
+    /// Who renders.
+    #[command(flatten)]
+    pub backend: BackendArgs,
     /// Settings.
     #[command(flatten)]
     pub settings: SettingsArgs,
@@ -188,6 +199,18 @@ pub struct BenchArgs {
     /// Frames to render before, which do not count
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = |text: &str| whole::<u32>(text, 0, 1_000_000))]
     pub warmup: u32,
+    /// Also print what the frame costs: rays a pixel, and bytes that each pass of a Vulkan device must move with the time
+    /// that its memory needs for them (always in JSON)
+    #[arg(long)]
+    pub cost: bool,
+    /// Bandwidth of the memory of the Vulkan device for --cost, GB/s, reading and writing together [default: measured with
+    /// large copies]
+    #[arg(long, value_name = "GB/S", value_parser = bandwidth)]
+    pub bandwidth: Option<f64>,
+    /// Also measure what thin detection costs, as the paper did: the same frame with --thin off, paper and sheet, at
+    /// 1920x1080 with 8 rays unless --size and --spp say otherwise
+    #[arg(long)]
+    pub thin_cost: bool,
     /// Print the result as one JSON object on stdout
     #[arg(long)]
     pub json: bool,
@@ -197,6 +220,12 @@ pub struct BenchArgs {
     /// How to run.
     #[command(flatten)]
     pub run: RunArgs,
+    /// Who renders.
+    #[command(flatten)]
+    pub backend: BackendArgs,
+    /// What shares an acceleration structure.
+    #[command(flatten)]
+    pub grouping: GroupingArgs,
     /// Settings.
     #[command(flatten)]
     pub settings: SettingsArgs,
@@ -211,9 +240,21 @@ pub struct InfoArgs {
     /// Scene of a glTF file by number from 0 or by name [default: the one that the file names, else the first]
     #[arg(long, value_name = "NAME_OR_INDEX")]
     pub gltf_scene: Option<String>,
+    /// List the Vulkan devices of this machine, and which one is taken by itself
+    #[arg(long)]
+    pub devices: bool,
+    /// Build the scene's acceleration structures on a Vulkan device, and tell their numbers
+    #[arg(long)]
+    pub acceleration: bool,
     /// Print one JSON object on stdout
     #[arg(long)]
     pub json: bool,
+    /// The device of --acceleration.
+    #[command(flatten)]
+    pub device: DeviceArgs,
+    /// What shares an acceleration structure.
+    #[command(flatten)]
+    pub grouping: GroupingArgs,
 }
 
 /// Arguments of `ambray completions`.
@@ -292,6 +333,11 @@ fn seconds(text: &str) -> Result<f64, String> {
     let expected = "seconds from 0 to 86400";
     let seconds: f64 = text.parse().map_err(|_| expected)?;
     if (0.0..=86_400.0).contains(&seconds) { Ok(seconds) } else { Err(expected.to_owned()) }
+}
+
+fn bandwidth(text: &str) -> Result<f64, String> {
+    let gigabytes = text.parse().ok().filter(|number| (1e-3..=1e6).contains(number));
+    gigabytes.ok_or_else(|| "gigabytes a second from 0.001 to 1000000".to_owned())
 }
 
 fn whole<T: FromStr + PartialOrd + Display>(text: &str, least: T, most: T) -> Result<T, String> {

@@ -32,7 +32,10 @@ where
     terminal::log_warnings();
     let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
     let outcome = match args::parse_from(&arguments) {
-        Ok(command) => signals::install().and_then(|()| dispatch(&command)),
+        Ok(command) => signals::install()
+            .and_then(|()| dispatch(&command))
+            // Devices are closed by now, which the layer may have had something to say about.
+            .and_then(|()| terminal::check_validation()),
         Err(error) if error.use_stderr() => Err(usage::explain(&error, &arguments)),
         Err(help) => {
             let _ = help.print(); // a closed terminal is no reason to fail

@@ -1,5 +1,8 @@
 //! What was done, as text for people and as JSON for programs. Keys carry their unit; they are never renamed.
 
+mod acceleration;
+mod backend;
+
 use std::{fmt::Write as _, time::Duration};
 
 use ambray::{
@@ -8,6 +11,7 @@ use ambray::{
 };
 use serde::Serialize;
 
+pub use self::{acceleration::AccelerationReport, backend::BackendReport};
 use crate::scene_source::Source;
 
 /// Milliseconds to a thousandth.
@@ -125,16 +129,13 @@ pub struct BuildReport {
     pub build_ms: f64,
     /// Their memory.
     pub acceleration_bytes: u64,
-    /// Instruction set of the kernels.
-    pub isa: &'static str,
 }
 
 impl BuildReport {
     /// From the renderer's numbers.
     #[must_use]
     pub fn of(stats: &BuildStats) -> Self {
-        let build_ms = milliseconds(stats.build_time);
-        Self { build_ms, acceleration_bytes: stats.acceleration_bytes, isa: stats.isa }
+        Self { build_ms: milliseconds(stats.build_time), acceleration_bytes: stats.acceleration_bytes }
     }
 }
 
@@ -207,7 +208,7 @@ impl ViewReport {
     }
 }
 
-/// Wall time of the stages.
+/// Time of the stages: on the processor wall time, on a device as its own clock has it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct StageReport {
     /// Primary rays and surface attributes.
@@ -218,7 +219,11 @@ pub struct StageReport {
     pub ambient_ms: f64,
     /// Filter and composition.
     pub filter_ms: f64,
-    /// The whole frame.
+    /// Acceleration structures that a device rebuilds for each frame.
+    pub structures_ms: f64,
+    /// Copying the frame from a device, wall time.
+    pub transfer_ms: f64,
+    /// The whole frame, wall time. The first frame of a device compiles its programs.
     pub total_ms: f64,
 }
 
@@ -231,6 +236,8 @@ impl StageReport {
             direct_ms: milliseconds(times.direct),
             ambient_ms: milliseconds(times.ambient),
             filter_ms: milliseconds(times.filter),
+            structures_ms: milliseconds(times.structures),
+            transfer_ms: milliseconds(times.transfer),
             total_ms: milliseconds(times.total),
         }
     }
@@ -266,6 +273,8 @@ pub struct RenderReport {
     pub scene: SceneReport,
     /// The acceleration structures.
     pub build: BuildReport,
+    /// Who rendered.
+    pub backend: BackendReport,
     /// What was chosen for the frame.
     pub view: ViewReport,
     /// Pixels in a row.
@@ -274,9 +283,9 @@ pub struct RenderReport {
     pub height: u32,
     /// Ambient rays per pixel.
     pub spp: u32,
-    /// Threads used.
+    /// Threads used; 0 on a device.
     pub threads: usize,
-    /// Wall time of the frame.
+    /// Time of the frame.
     pub times: StageReport,
     /// Rays of the frame.
     pub rays: RayReport,
@@ -303,6 +312,7 @@ impl RenderReport {
             version: env!("CARGO_PKG_VERSION"),
             scene,
             build: BuildReport::of(&renderer.build_stats()),
+            backend: BackendReport::of(renderer),
             view: ViewReport::of(&frame.view),
             width: frame.width,
             height: frame.height,
@@ -320,16 +330,20 @@ impl RenderReport {
     #[must_use]
     pub fn text(&self) -> String {
         let mut text = scene_line(&self.scene, &self.build);
+        text.push_str(&self.backend.line());
         let Self { view, times, rays, .. } = self;
+        let threads = match self.threads {
+            0 => String::new(),
+            threads => format!(", {}", counted(threads as u64, "thread")),
+        };
         let _ = writeln!(text, "view     {}", camera_line(&view.camera)); // writing to a string cannot fail
         let _ = writeln!(
             text,
-            "frame    {}x{}, {} rays/pixel, radius {}, {}",
+            "frame    {}x{}, {} rays/pixel, radius {}{threads}",
             self.width,
             self.height,
             self.spp,
-            length(view.radius),
-            counted(self.threads as u64, "thread")
+            length(view.radius)
         );
         let _ = writeln!(text, "time     {}", times_line(times));
         let _ = writeln!(text, "rays     {}", rays_line(rays));
@@ -371,13 +385,26 @@ fn camera_line(camera: &CameraReport) -> String {
     format!("{}: at {position}, looking along {forward}, {projection}", camera.origin)
 }
 
-/// Times of the stages in a line.
+/// Times of the stages in a line; the last two only where they are something.
 #[must_use]
 pub fn times_line(times: &StageReport) -> String {
-    let StageReport { primary_ms, direct_ms, ambient_ms, filter_ms, total_ms } = times;
-    format!(
-        "{total_ms:.1} ms: primary {primary_ms:.1}, direct {direct_ms:.1}, ambient {ambient_ms:.1}, filter {filter_ms:.1}"
-    )
+    let stages = [
+        ("primary", times.primary_ms, true),
+        ("direct", times.direct_ms, true),
+        ("ambient", times.ambient_ms, true),
+        ("filter", times.filter_ms, true),
+        ("structures", times.structures_ms, false),
+        ("transfer", times.transfer_ms, false),
+    ];
+    let told = stages.into_iter().filter(|&(_, ms, always)| always || ms > 0.0);
+    let told: Vec<_> = told.map(|(name, ms, _)| format!("{name} {}", short(ms))).collect();
+    format!("{} ms: {}", short(times.total_ms), told.join(", "))
+}
+
+/// Milliseconds, with hundredths where they are few.
+#[must_use]
+pub fn short(ms: f64) -> String {
+    if ms < 10.0 { format!("{ms:.2}") } else { format!("{ms:.1}") }
 }
 
 /// Rays by type in a line.
@@ -416,6 +443,7 @@ mod tests {
         assert_eq!(rate(16, Duration::from_millis(5)), "3 200 rays");
         assert_eq!(rate(4_600_000, Duration::from_secs(2)), "2.3 million rays");
         assert_eq!(triple([-0.0, 3.688, -0.815_000_06]), "0,3.688,-0.815");
+        assert_eq!([0.234, 9.99, 12.34].map(short), ["0.23", "9.99", "12.3"]);
         assert_eq!(milliseconds(Duration::from_nanos(1_234_567)), 1.235);
     }
 }

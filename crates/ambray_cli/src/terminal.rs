@@ -1,8 +1,18 @@
 //! What the user reads: stdout that may be closed early, stderr that may be absent. Nothing here panics.
 
-use std::io::{self, Write as _};
+use std::{
+    io::{self, Write as _},
+    sync::atomic::{AtomicUsize, Ordering},
+};
 
+use ambray::vulkan::VALIDATION_LOG;
+use anyhow::anyhow;
 use log::{LevelFilter, Log, Metadata, Record};
+
+use crate::report::counted;
+
+/// Messages of Vulkan's validation layer that were shown.
+static VALIDATION_MESSAGES: AtomicUsize = AtomicUsize::new(0);
 
 /// Writes `text` to stdout.
 pub fn print(text: &str) -> anyhow::Result<()> {
@@ -34,6 +44,14 @@ pub fn log_warnings() {
     }
 }
 
+/// An error if Vulkan's validation layer had anything to say so far.
+pub fn check_validation() -> anyhow::Result<()> {
+    match VALIDATION_MESSAGES.load(Ordering::Relaxed) {
+        0 => Ok(()),
+        count => Err(anyhow!("Vulkan's validation layer had {}", counted(count as u64, "message"))),
+    }
+}
+
 static WARNINGS: Warnings = Warnings;
 
 #[derive(Debug)]
@@ -45,7 +63,13 @@ impl Log for Warnings {
     }
 
     fn log(&self, record: &Record<'_>) {
-        if self.enabled(record.metadata()) {
+        if !self.enabled(record.metadata()) {
+            return;
+        }
+        if record.target() == VALIDATION_LOG {
+            VALIDATION_MESSAGES.fetch_add(1, Ordering::Relaxed);
+            warn(&format!("vulkan: {}", record.args()));
+        } else {
             warn(&record.args().to_string());
         }
     }

@@ -6,17 +6,25 @@ use std::{
     time::{Duration, Instant},
 };
 
-use ambray::{Frame, Renderer, settings::Settings};
+use ambray::{RayCounts, Renderer, RendererOptions, settings::Settings};
 use anyhow::bail;
 use serde::Serialize;
 
-use super::{check_memory, control, explained};
+use super::{
+    check_memory, control,
+    cost::CostReport,
+    explained, renderer,
+    thin_cost::{self, ThinCost},
+};
 use crate::{
-    args::BenchArgs,
+    args::{BenchArgs, SettingsArgs},
     machine::Machine,
     output::atomic::{Batch, Target},
     progress::Progress,
-    report::{self, BuildReport, RayReport, SceneReport, StageReport, ViewReport, milliseconds},
+    report::{
+        self, AccelerationReport, BackendReport, BuildReport, RayReport, SceneReport, StageReport,
+        ViewReport, milliseconds,
+    },
     scene_source, settings_file, signals, terminal,
 };
 
@@ -24,6 +32,7 @@ use crate::{
 #[derive(Clone, Debug, Serialize)]
 struct BenchReport {
     machine: Machine,
+    /// Threads used; 0 on a device.
     threads: usize,
     warmup: u32,
     settings: Settings,
@@ -34,12 +43,19 @@ struct BenchReport {
 struct SceneBench {
     scene: SceneReport,
     build: BuildReport,
+    backend: BackendReport,
+    /// The acceleration structures of a device; null on the processor.
+    acceleration: Option<AccelerationReport>,
     view: ViewReport,
     frames: usize,
+    /// Wall time of a frame that stays on the device.
     frame_ms: Spread,
     /// Medians of the stages.
     stages: StageReport,
     rays: RayReport,
+    cost: CostReport,
+    /// With `--thin-cost`; the rest is of the frame without thin detection then.
+    thin_cost: Option<Vec<ThinCost>>,
 }
 
 /// Distribution of the time of a frame, milliseconds.
@@ -54,7 +70,9 @@ struct Spread {
 
 /// Measures the scenes.
 pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
-    let settings = settings_file::resolve(&args.settings)?;
+    let settings =
+        settings_file::resolve(&SettingsArgs { flags: thin_cost::flags(args)?, ..args.settings.clone() })?;
+    let options = args.backend.options(args.grouping.grouping)?;
     let target = args.output.as_deref().map(Target::of);
     let saved = args.settings.save_settings.as_deref().map(Target::of);
     if target.is_some() && target == saved {
@@ -79,10 +97,10 @@ pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
         scenes: Vec::new(),
     };
     for scene in &args.scenes {
-        let (bench, threads) = measure(scene, args, &settings)?;
+        let (bench, threads) = measure(scene, args, &settings, &options)?;
         report.threads = threads;
         if !args.json && !args.run.quiet {
-            terminal::print(&bench.text())?;
+            terminal::print(&bench.text(args.cost, &settings))?;
         }
         report.scenes.push(bench);
     }
@@ -100,43 +118,90 @@ pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
 }
 
 /// Measures one scene; also returns the number of threads.
-fn measure(path: &Path, args: &BenchArgs, settings: &Settings) -> anyhow::Result<(SceneBench, usize)> {
+fn measure(
+    path: &Path,
+    args: &BenchArgs,
+    settings: &Settings,
+    options: &RendererOptions,
+) -> anyhow::Result<(SceneBench, usize)> {
     let source = scene_source::open(path, args.gltf_scene.as_deref())?;
     let scene = SceneReport::of(&source);
-    let renderer = Renderer::new(source.scene);
+    let renderer = renderer(source.scene, options, &args.run)?;
+    let backend = BackendReport::of(&renderer);
     let _graceful = signals::Graceful::begin();
-    let render = || -> anyhow::Result<(Frame, Duration)> {
-        let start = Instant::now();
-        let frame = renderer.render(settings, control(&args.run, &|_| ())).map_err(explained)?;
-        Ok((frame, start.elapsed()))
+    let variants = if args.thin_cost { thin_cost::variants(settings) } else { vec![settings.clone()] };
+    let measured = frames(&renderer, args, &variants)?;
+    if BackendReport::of(&renderer) != backend {
+        bail!("the device failed while it was measured: the times mean nothing");
+    }
+    let first = &measured[0];
+    let stages = first.stages();
+    let view = renderer.view(settings).map_err(explained)?;
+    let bench = SceneBench {
+        scene,
+        build: BuildReport::of(&renderer.build_stats()),
+        backend,
+        acceleration: renderer.acceleration_stats().as_ref().map(AccelerationReport::of),
+        view: ViewReport::of(&view),
+        frames: first.times.len(),
+        frame_ms: Spread::of(&first.times),
+        stages,
+        rays: RayReport::of(first.rays, first.median()),
+        cost: CostReport::of(&renderer, settings, first.rays, &stages, args.bandwidth),
+        thin_cost: args.thin_cost.then(|| thin_cost::costs(&measured, settings.size)),
     };
+    Ok((bench, first.threads))
+}
+
+/// Frames of one choice of settings.
+#[derive(Debug, Default)]
+pub(super) struct Measured {
+    /// In ascending order.
+    times: Vec<Duration>,
+    stages: Vec<StageReport>,
+    /// Of the last frame.
+    pub(super) rays: RayCounts,
+    threads: usize,
+}
+
+/// Measures frames of all `variants` in turn, so that a machine that slows down does so for all of them.
+fn frames(renderer: &Renderer, args: &BenchArgs, variants: &[Settings]) -> anyhow::Result<Vec<Measured>> {
     let progress = Progress::new("measuring", args.run.quiet);
+    let measure =
+        |settings: &Settings| renderer.measure(settings, control(&args.run, &|_| ())).map_err(explained);
     for _ in 0..args.warmup {
-        render()?;
+        variants.iter().try_for_each(|settings| measure(settings).map(|_| ()))?;
     }
     let start = Instant::now();
-    let (mut times, mut stages) = (Vec::new(), Vec::new());
+    let mut measured: Vec<Measured> = variants.iter().map(|_| Measured::default()).collect();
+    let mut rounds = 0_u32;
     loop {
-        let (frame, time) = render()?;
-        times.push(time);
-        stages.push(StageReport::of(&frame.stats.times));
-        let by_frames = times.len() as f64 / f64::from(args.frames);
+        for (measured, settings) in measured.iter_mut().zip(variants) {
+            let stats = measure(settings)?;
+            measured.times.push(stats.times.total);
+            measured.stages.push(StageReport::of(&stats.times));
+            (measured.rays, measured.threads) = (stats.rays, stats.threads);
+        }
+        rounds += 1;
+        let by_frames = f64::from(rounds) / f64::from(args.frames);
         let by_time = if args.seconds > 0.0 { start.elapsed().as_secs_f64() / args.seconds } else { 1.0 };
         progress.report(by_frames.min(by_time) as f32);
-        if by_frames < 1.0 || by_time < 1.0 {
-            continue;
+        if by_frames >= 1.0 && by_time >= 1.0 {
+            measured.iter_mut().for_each(|measured| measured.times.sort_unstable());
+            return Ok(measured);
         }
-        times.sort_unstable();
-        let bench = SceneBench {
-            scene,
-            build: BuildReport::of(&renderer.build_stats()),
-            view: ViewReport::of(&frame.view),
-            frames: times.len(),
-            frame_ms: Spread::of(&times),
-            stages: medians(&stages),
-            rays: RayReport::of(frame.stats.rays, quantile(&times, 0.5)),
-        };
-        return Ok((bench, frame.stats.threads));
+    }
+}
+
+impl Measured {
+    /// Median time of a frame.
+    pub(super) fn median(&self) -> Duration {
+        quantile(&self.times, 0.5)
+    }
+
+    /// Medians of the stages.
+    pub(super) fn stages(&self) -> StageReport {
+        medians(&self.stages)
     }
 }
 
@@ -171,18 +236,27 @@ fn medians(stages: &[StageReport]) -> StageReport {
         direct_ms: median(|s| s.direct_ms),
         ambient_ms: median(|s| s.ambient_ms),
         filter_ms: median(|s| s.filter_ms),
+        structures_ms: median(|s| s.structures_ms),
+        transfer_ms: median(|s| s.transfer_ms),
         total_ms: median(|s| s.total_ms),
     }
 }
 
 impl SceneBench {
-    fn text(&self) -> String {
+    fn text(&self, with_cost: bool, settings: &Settings) -> String {
         let mut text = report::scene_line(&self.scene, &self.build);
+        text.push_str(&self.backend.line());
         let Spread { median, p95, min, .. } = self.frame_ms;
         let frames = self.frames;
         let _ = writeln!(text, "frames   {frames}: median {median:.2} ms, p95 {p95:.2} ms, min {min:.2} ms");
         let _ = writeln!(text, "stages   median {}", report::times_line(&self.stages));
         let _ = writeln!(text, "rays     {}", report::rays_line(&self.rays));
+        if with_cost {
+            text.push_str(&self.cost.text());
+        }
+        if let Some(costs) = &self.thin_cost {
+            text.push_str(&thin_cost::table(costs, settings.size));
+        }
         text
     }
 }

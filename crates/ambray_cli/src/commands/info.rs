@@ -3,41 +3,73 @@
 use std::fmt::Write as _;
 
 use ambray::{
-    Renderer,
+    Control, Renderer,
     camera::Projection,
     light::Light,
     scene::{AlphaMode, Material, MaterialKind, Scene},
     settings::Settings,
     shape::Shape,
 };
+use anyhow::bail;
 use glam::Vec3;
 use serde::Serialize;
 
 use crate::{
     args::InfoArgs,
+    failure::with_hint,
     machine::Machine,
-    report::{self, BuildReport, SceneReport, ViewReport, bytes, grouped, triple},
+    report::{
+        self, AccelerationReport, BackendReport, BuildReport, SceneReport, ViewReport, bytes, grouped, triple,
+    },
     scene_source, terminal,
 };
 
 /// Names listed in the text; JSON has them all.
 const MOST_LISTED: usize = 32;
 
-/// Tells about a scene or the program.
+/// Tells about a scene, the devices or the program.
 pub fn run(args: &InfoArgs) -> anyhow::Result<()> {
+    check(args)?;
+    if args.devices {
+        return super::devices::run(args.json);
+    }
     let Some(path) = &args.scene else { return about_program(args.json) };
     let source = scene_source::open(path, args.gltf_scene.as_deref())?;
     let scene = SceneReport::of(&source);
     let contents = Contents::of(&source.scene);
-    let renderer = Renderer::new(source.scene);
+    let renderer = if args.acceleration {
+        let options = args.device.options(args.grouping.grouping);
+        Renderer::open(source.scene, &options, Control::default()).map_err(super::explained)?
+    } else {
+        Renderer::new(source.scene)
+    };
     let view = renderer.view(&Settings::default()).map_err(super::explained)?;
     let info = SceneInfo {
         scene,
         build: BuildReport::of(&renderer.build_stats()),
+        backend: BackendReport::of(&renderer),
+        acceleration: renderer.acceleration_stats().as_ref().map(AccelerationReport::of),
         contents,
         default_view: ViewReport::of(&view),
     };
     terminal::print(&if args.json { report::json(&info)? } else { info.text() })
+}
+
+/// Refuses options that do not go together.
+fn check(args: &InfoArgs) -> anyhow::Result<()> {
+    if args.devices && (args.scene.is_some() || args.acceleration) {
+        bail!("--devices is not allowed with SCENE or --acceleration: it tells about this machine");
+    }
+    if args.acceleration && args.scene.is_none() {
+        let error = anyhow::anyhow!("--acceleration needs a SCENE");
+        return Err(with_hint(error, "for the built-in scene: ambray info atrium --acceleration"));
+    }
+    match args.device.asked(args.grouping.grouping) {
+        Some(option) if !args.acceleration => {
+            bail!("{option} is not allowed without --acceleration: nothing else of info needs a device")
+        }
+        _ => Ok(()),
+    }
 }
 
 fn about_program(as_json: bool) -> anyhow::Result<()> {
@@ -58,6 +90,10 @@ fn about_program(as_json: bool) -> anyhow::Result<()> {
 struct SceneInfo {
     scene: SceneReport,
     build: BuildReport,
+    /// Who made the scene ready.
+    backend: BackendReport,
+    /// With `--acceleration`, else null.
+    acceleration: Option<AccelerationReport>,
     #[serde(flatten)]
     contents: Contents,
     /// What a frame with default settings would use.
@@ -259,6 +295,10 @@ impl SceneInfo {
     fn text(&self) -> String {
         let Contents { bounds, meshes, shapes, materials, images, lights, cameras, .. } = &self.contents;
         let mut text = report::scene_line(&self.scene, &self.build);
+        if let Some(acceleration) = &self.acceleration {
+            text.push_str(&self.backend.line());
+            text.push_str(&acceleration.text());
+        }
         let mut line = |name: &str, rest: String| {
             let _ = writeln!(text, "{name:<9}{rest}"); // writing to a string cannot fail
         };

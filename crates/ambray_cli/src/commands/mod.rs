@@ -1,19 +1,28 @@
 //! The commands.
 
 pub mod bench;
+mod cost;
+mod devices;
 pub mod documents;
 pub mod info;
 pub mod query;
 pub mod render;
+mod thin_cost;
 
-use ambray::{Control, RenderError, settings::Size};
+use ambray::{Control, RenderError, Renderer, RendererOptions, scene::Scene, settings::Size};
 use anyhow::bail;
 
-use crate::{args::RunArgs, failure::Problems, machine, report, signals};
+use crate::{args::RunArgs, failure::Problems, machine, progress::Progress, report, signals};
 
 /// Control of long work: Ctrl-C, threads and a progress bar.
 fn control<'a>(run: &RunArgs, progress: &'a (dyn Fn(f32) + Sync)) -> Control<'a> {
     Control { progress, cancel: signals::cancel_flag(), threads: usize::from(run.threads) }
+}
+
+/// Makes `scene` ready for the backend that `options` ask for.
+fn renderer(scene: Scene, options: &RendererOptions, run: &RunArgs) -> anyhow::Result<Renderer> {
+    let progress = Progress::new("building", run.quiet);
+    Renderer::open(scene, options, control(run, &|share| progress.report(share))).map_err(explained)
 }
 
 /// Memory of a frame with its buffers, bytes a pixel; measured, rounded up.

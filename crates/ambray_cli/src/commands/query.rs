@@ -10,13 +10,13 @@ use std::{
 use ambray::{QueryPoint, RenderError, Renderer, settings::Settings};
 use anyhow::{Context as _, anyhow, bail};
 
-use super::{control, explained};
+use super::{control, explained, renderer};
 use crate::{
-    args::QueryArgs,
+    args::{Grouping, QueryArgs},
     output::atomic::{Batch, Target},
     points::{self, Reader},
     progress::Progress,
-    report::{counted, rate},
+    report::{BackendReport, counted, rate},
     scene_source, settings_file, terminal,
 };
 
@@ -26,6 +26,7 @@ const CHUNK: usize = 1 << 15;
 /// Evaluates points.
 pub fn run(args: &QueryArgs) -> anyhow::Result<()> {
     let settings = settings_file::resolve(&args.settings)?;
+    let options = args.backend.options(Grouping::Auto)?;
     let target = Target::of(args.output.as_deref().unwrap_or(Path::new("-")));
     target.check()?;
     let saved = args.settings.save_settings.as_deref().map(Target::of);
@@ -42,7 +43,7 @@ pub fn run(args: &QueryArgs) -> anyhow::Result<()> {
     let reader = Reader::new(input, name, args.points_format);
 
     let source = scene_source::open(&args.scene.scene, args.scene.gltf_scene.as_deref())?;
-    let renderer = Renderer::new(source.scene);
+    let renderer = renderer(source.scene, &options, &args.run)?;
     let mut job =
         Job { args, settings: &settings, renderer: &renderer, reader, length, done: Done::default() };
     // Ctrl-C ends the program at once here, even where it waits for more points; temporary files are removed.
@@ -59,6 +60,7 @@ pub fn run(args: &QueryArgs) -> anyhow::Result<()> {
     batch.commit()?;
     if !args.run.quiet {
         job.done.say(&target);
+        terminal::say(BackendReport::of(&renderer).line().trim_end());
     }
     Ok(())
 }

@@ -2,12 +2,11 @@
 
 use std::time::Instant;
 
-use ambray::Renderer;
 use anyhow::bail;
 
-use super::{check_memory, control, explained};
+use super::{check_memory, control, explained, renderer};
 use crate::{
-    args::RenderArgs,
+    args::{Grouping, RenderArgs},
     output::{
         Plan,
         atomic::{Batch, Target},
@@ -20,6 +19,7 @@ use crate::{
 /// Renders a scene.
 pub fn run(args: &RenderArgs) -> anyhow::Result<()> {
     let settings = settings_file::resolve(&args.settings)?;
+    let options = args.backend.options(Grouping::Auto)?;
     let plan = Plan::new(args.output.as_deref(), args.format, &args.aov)?;
     if args.json && plan.main == Target::Stdout {
         bail!("--json is not allowed with -o -: both write to stdout");
@@ -33,7 +33,7 @@ pub fn run(args: &RenderArgs) -> anyhow::Result<()> {
 
     let source = scene_source::open(&args.scene.scene, args.scene.gltf_scene.as_deref())?;
     let scene = SceneReport::of(&source);
-    let renderer = Renderer::new(source.scene);
+    let renderer = renderer(source.scene, &options, &args.run)?;
     let graceful = signals::Graceful::begin();
     let progress = Progress::new("rendering", args.run.quiet);
     let report_share = |share| progress.report(share);

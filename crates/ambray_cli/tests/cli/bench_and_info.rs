@@ -30,6 +30,40 @@ fn bench_measures_frames() {
 }
 
 #[test]
+fn thin_detection_is_measured_beside_a_frame_without() {
+    let bench = Bench::new();
+    let measure = ["bench", "scene.obj", "--size=64x36", "--frames=1", "--warmup=0", "--thin-cost"];
+    let report = json(&bench.run(&[&measure[..], &["--json"]].concat()).succeeds().stdout);
+    let scene = &report["scenes"][0];
+    let costs = scene["thin_cost"].as_array().expect("a list");
+    let names: Vec<_> = costs.iter().map(|cost| cost["thin"].as_str().expect("a name")).collect();
+    assert_eq!(names, ["off", "paper", "sheet"]);
+    assert_eq!(costs[0]["more_ms"], 0.0);
+    assert_eq!(costs[0]["rays"]["chord"], 0);
+    assert!(costs[1]["rays"]["chord"].as_u64() > costs[2]["rays"]["chord"].as_u64());
+    assert_eq!(report["settings"]["spp"], 8);
+    assert_eq!(report["settings"]["thin"], "off");
+    assert_eq!(costs[0]["rays_per_pixel"], scene["cost"]["rays_per_pixel"]["total"]);
+    let text = bench.run(&measure).succeeds().text();
+    assert!(text.contains("more ms") && text.contains("  sheet "), "{text}");
+    bench.run(&["bench", "--thin-cost", "--thin=off"]).fails(&["--thin is not allowed with --thin-cost"]);
+}
+
+#[test]
+fn the_cost_of_a_frame_is_told() {
+    let bench = Bench::new();
+    let measure = ["bench", "scene.obj", "--size=64x36", "--frames=1", "--warmup=0"];
+    let report = json(&bench.run(&[&measure[..], &["--json"]].concat()).succeeds().stdout);
+    let cost = &report["scenes"][0]["cost"];
+    assert_eq!(cost["pixels"], 64 * 36);
+    assert_eq!(cost["rays_per_pixel"]["primary"], 1.0);
+    assert_eq!(cost["passes"], serde_json::json!([]), "the processor has no passes over planes");
+    let text = bench.run(&[&measure[..], &["--cost"]].concat()).succeeds().text();
+    assert!(text.contains("cost     ") && text.contains("rays a pixel: primary 1.00"), "{text}");
+    bench.run(&["bench", "--bandwidth=0"]).fails(&["--bandwidth 0 is not allowed: gigabytes a second"]);
+}
+
+#[test]
 fn info_tells_what_is_in_a_scene() {
     let bench = Bench::new();
     let text = bench.run(&["info", "scene.obj"]).succeeds().text();

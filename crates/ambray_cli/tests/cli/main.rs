@@ -1,6 +1,7 @@
 //! Runs the `ambray` program as a user would.
 #![forbid(unsafe_code)]
 
+mod backend;
 mod bench_and_info;
 mod help;
 mod interrupt;
@@ -60,7 +61,16 @@ impl Bench {
         names
     }
 
+    /// The program on a machine without Vulkan drivers, so that it does the same on every machine.
     fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = self.command_here(arguments);
+        // Both names of the variable, for loaders old and new.
+        command.env("VK_DRIVER_FILES", "none.json").env("VK_ICD_FILENAMES", "none.json");
+        command
+    }
+
+    /// The program on this machine, with the Vulkan drivers it has.
+    fn command_here(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_ambray"));
         command.current_dir(self.folder.path()).args(arguments).stdin(Stdio::null());
         command
