@@ -206,9 +206,9 @@ fn one_triangle<const W: usize, R: Lanes<16>, Q: Query>(
     mut live: u32,
     best: &mut [Hit; LANES],
 ) -> u32 {
-    let (ax, ay, az) = corner::<W, R>(&block.corners[0], lane_of_triangle, packet);
-    let (bx, by, bz) = corner::<W, R>(&block.corners[1], lane_of_triangle, packet);
-    let (cx, cy, cz) = corner::<W, R>(&block.corners[2], lane_of_triangle, packet);
+    let (ax, ay) = corner::<W, R>(&block.corners[0], lane_of_triangle, packet);
+    let (bx, by) = corner::<W, R>(&block.corners[1], lane_of_triangle, packet);
+    let (cx, cy) = corner::<W, R>(&block.corners[2], lane_of_triangle, packet);
     let u = cx.mul(by).sub(cy.mul(bx));
     let v = ax.mul(cy).sub(ay.mul(cx));
     let w = bx.mul(ay).sub(by.mul(ax));
@@ -218,19 +218,14 @@ fn one_triangle<const W: usize, R: Lanes<16>, Q: Query>(
         return live;
     }
     let determinant = u.add(v).add(w);
-    let shear = packet.shear[2].load::<R>();
-    let t = u.mul(az).add(v.mul(bz)).add(w.mul(cz)).div(determinant).mul(shear);
-    let mut candidates = inside & live & zero.lt(t) & t.le(packet.limit.load::<R>());
-    if candidates == 0 {
-        return live;
-    }
-    let (t, v, w, determinant) = (t.to_array(), v.to_array(), w.to_array(), determinant.to_array());
+    let mut candidates = inside & live;
+    let (v, w, determinant) = (v.to_array(), w.to_array(), determinant.to_array());
     while candidates != 0 {
         let lane = candidates.trailing_zeros() as usize % LANES;
         candidates &= candidates - 1;
         let ray = packet.ray(lane);
         let entry = Entry { instance: None, near: 0.0, seed: rays[lane].seed, alpha: scene.alpha };
-        let covered = [t[lane], v[lane], w[lane], determinant[lane]];
+        let covered = [v[lane], w[lane], determinant[lane]];
         if triangle::candidate(block, lane_of_triangle, &ray, &entry, covered, &mut best[lane]) {
             if Q::ANY {
                 packet.limit.0[lane] = -1.0;
@@ -245,7 +240,7 @@ fn one_triangle<const W: usize, R: Lanes<16>, Q: Query>(
 
 /// One corner as each ray sees it.
 #[inline(always)]
-fn corner<const W: usize, R: Lanes<16>>(corner: &[[f32; W]; 3], lane: usize, packet: &Packet) -> (R, R, R) {
+fn corner<const W: usize, R: Lanes<16>>(corner: &[[f32; W]; 3], lane: usize, packet: &Packet) -> (R, R) {
     let (lane, [x, y, z]) = (lane % W, packet.axes);
     let depth = R::splat(corner[z][lane]).sub(packet.origin[z].load::<R>());
     let sx = packet.shear[0].load::<R>();
@@ -253,6 +248,5 @@ fn corner<const W: usize, R: Lanes<16>>(corner: &[[f32; W]; 3], lane: usize, pac
     (
         R::splat(corner[x][lane]).sub(packet.origin[x].load::<R>()).sub(sx.mul(depth)),
         R::splat(corner[y][lane]).sub(packet.origin[y].load::<R>()).sub(sy.mul(depth)),
-        depth,
     )
 }

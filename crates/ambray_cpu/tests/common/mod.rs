@@ -5,7 +5,7 @@
 use ambray_core::trace::{Hit, Ray, Trace};
 use ambray_cpu::AlphaTest;
 use ambray_scene::{Instance, Mesh, Scene};
-use glam::{Affine3A, Vec3};
+use glam::{Affine3A, DVec3, Vec3};
 
 /// Random numbers by PCG, so that tests are the same everywhere.
 pub struct Random(pub u32);
@@ -190,7 +190,7 @@ fn slab(planes: &[f32; 6], origin: Vec3, direction: Vec3) -> Option<f32> {
     (near <= far * (1.0 + 32.0 / 16_777_216.0)).then_some(near)
 }
 
-/// Woop, Benthin and Wald 2013, zeros inside, then the box of the triangle.
+/// Coverage by Woop, Benthin and Wald 2013, zeros inside; then the distance of the plane, and the box of the triangle.
 fn intersect(corners: &[Vec3; 3], origin: Vec3, direction: Vec3) -> Option<(f32, f32, f32)> {
     let a = direction.abs();
     let z = if a.x >= a.y && a.x >= a.z {
@@ -213,8 +213,13 @@ fn intersect(corners: &[Vec3; 3], origin: Vec3, direction: Vec3) -> Option<(f32,
         return None;
     }
     let determinant = u + v + w;
-    let t = (u * a.z + v * b.z + w * c.z) / determinant * shear[2];
-    if t <= 0.0 || t.is_nan() {
+    // Where the plane is met, in double precision.
+    let permuted = |p: Vec3| DVec3::new(p[x].into(), p[y].into(), p[z].into());
+    let [a, b, c] = corners.map(|p| permuted(p) - permuted(origin));
+    let normal = (b - a).cross(c - a);
+    let depth = normal.dot(a) / normal.dot(DVec3::new(shear[0].into(), shear[1].into(), 1.0));
+    let t = (depth * f64::from(shear[2])) as f32;
+    if t <= 0.0 || t.is_nan() || determinant == 0.0 {
         return None;
     }
     let near = slab(&bounds(corners), origin, direction)?;
