@@ -207,8 +207,8 @@ pub struct BenchArgs {
     /// large copies]
     #[arg(long, value_name = "GB/S", value_parser = bandwidth)]
     pub bandwidth: Option<f64>,
-    /// Also measure what thin detection costs, as the paper did: the same frame with --thin off, paper and sheet, at
-    /// 1920x1080 with 8 rays unless --size and --spp say otherwise
+    /// Measure what thin detection costs: the same frame with --thin off, paper and sheet in turn, at 1920x1080 with 8 rays
+    /// unless --size and --spp say otherwise
     #[arg(long)]
     pub thin_cost: bool,
     /// Print the result as one JSON object on stdout

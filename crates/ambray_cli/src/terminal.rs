@@ -76,3 +76,21 @@ impl Log for Warnings {
 
     fn flush(&self) {}
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_of_the_validation_layer_are_an_error_in_the_end() {
+        let log = |target: &str| {
+            let record = Record::builder().target(target).level(log::Level::Warn).build();
+            WARNINGS.log(&record);
+        };
+        log("ambray");
+        assert!(check_validation().is_ok());
+        log(VALIDATION_LOG);
+        let error = check_validation().unwrap_err().to_string();
+        assert_eq!(error, "Vulkan's validation layer had 1 message");
+    }
+}
