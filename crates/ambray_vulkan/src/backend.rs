@@ -71,6 +71,10 @@ impl VulkanBackend {
         &self.context
     }
 
+    pub(crate) const fn tables(&self) -> &Tables {
+        &self.tables
+    }
+
     /// How rays are traced: [`TraceMode::Pipeline`] or [`TraceMode::Query`].
     #[must_use]
     pub const fn trace_mode(&self) -> TraceMode {
@@ -246,7 +250,7 @@ impl VulkanBackend {
         Ok(times)
     }
 
-    fn state(&self) -> MutexGuard<'_, State> {
+    pub(crate) fn state(&self) -> MutexGuard<'_, State> {
         // Everything in the state is made anew or overwritten for each frame, so a panic of another thread does not matter.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }

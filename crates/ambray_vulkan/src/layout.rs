@@ -113,6 +113,25 @@ constants! {
     /// Pixels of a workgroup of the passes that trace by ray queries.
     QUERY_WIDTH: u32 = 8;
     QUERY_HEIGHT: u32 = 4;
+
+    /// Functions under test, and words of the arguments and of the values of a call.
+    FUNCTION_INTEGERS: u32 = 0;
+    FUNCTION_PIXELS: u32 = 1;
+    FUNCTION_ALPHA: u32 = 2;
+    FUNCTION_SAMPLES: u32 = 3;
+    FUNCTION_BASIS: u32 = 4;
+    FUNCTION_OPENNESS: u32 = 5;
+    FUNCTION_OFFSET: u32 = 6;
+    FUNCTION_LIGHT: u32 = 7;
+    FUNCTION_CAMERA: u32 = 8;
+    FUNCTION_TEXTURE: u32 = 9;
+    FUNCTION_CHECKER: u32 = 10;
+    FUNCTION_SHAPE_RAY: u32 = 11;
+    FUNCTION_SHAPE_SURFACE: u32 = 12;
+    FUNCTION_FINISH: u32 = 13;
+    FUNCTION_COMPOSE: u32 = 14;
+    ARGUMENTS: u32 = 16;
+    VALUES: u32 = 8;
 }
 
 /// The GLSL of everything in this module.

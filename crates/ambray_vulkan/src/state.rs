@@ -120,6 +120,10 @@ impl State {
         Ok(programs)
     }
 
+    pub(crate) const fn interface(&self) -> &Arc<Interface> {
+        &self.interface
+    }
+
     pub(crate) fn budget(&self) -> Budget {
         let is_software = self.context.report().kind == DeviceKind::Software;
         Budget::of(self.context.limits(), is_software)

@@ -4,7 +4,7 @@
 
 const float PI = 3.14159265358979;
 
-// exp(x) - 1 without cancellation near 0. Off by less than 1e-6 of the result.
+// exp(x) - 1 for x up to 1/4, without cancellation near 0. Off by less than 1e-6 of the result.
 float expm1(float x) {
     if (abs(x) > 0.25) {
         return exp(x) - 1.0;

@@ -26,13 +26,13 @@ pub(super) const fn query(pass: TracePass) -> &'static [u8] {
 
 /// A compute shader, compiled.
 #[derive(Debug)]
-pub(super) struct ComputePipeline {
+pub(crate) struct ComputePipeline {
     context: Arc<Context>,
     handle: vk::Pipeline,
 }
 
 impl ComputePipeline {
-    pub(super) fn new(
+    pub(crate) fn new(
         interface: &Interface,
         spirv: &[u8],
         specialization: &Specialization,
@@ -58,7 +58,7 @@ impl ComputePipeline {
     }
 
     /// Records the shader over `push.extent` pixels, in workgroups of the size that it was written for.
-    pub(super) fn record(
+    pub(crate) fn record(
         &self,
         recorder: &mut Recorder<'_>,
         interface: &Interface,

@@ -12,9 +12,9 @@ use crate::{
     layout::{self, Push, Specialization},
 };
 
+pub(crate) use compute::ComputePipeline;
 pub(crate) use interface::Interface;
 
-use compute::ComputePipeline;
 use ray_tracing::RayTracingPipeline;
 
 /// How rays are traced.
@@ -73,7 +73,7 @@ pub(crate) struct Programs {
 
 #[derive(Debug)]
 enum Tracing {
-    Pipeline(RayTracingPipeline),
+    Pipeline(Box<RayTracingPipeline>),
     Query(Vec<ComputePipeline>),
 }
 
@@ -86,7 +86,7 @@ impl Programs {
     ) -> Result<Self> {
         let compute = |spirv: &[u8]| ComputePipeline::new(interface, spirv, specialization);
         let tracing = if mode == TraceMode::Pipeline {
-            Tracing::Pipeline(RayTracingPipeline::new(interface, specialization)?)
+            Tracing::Pipeline(Box::new(RayTracingPipeline::new(interface, specialization)?))
         } else {
             Tracing::Query(TracePass::ALL.into_iter().map(|p| compute(compute::query(p))).collect::<Result<_>>()?)
         };

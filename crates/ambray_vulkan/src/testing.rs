@@ -1,0 +1,67 @@
+//! Single GLSL functions, called from tests that compare them with their twins in Rust.
+
+use std::sync::Arc;
+
+use ambray_core::{settings::Settings, view::View};
+use ash::vk::BufferUsageFlags;
+
+use crate::{
+    Location, Result, VulkanBackend, Work,
+    layout::{ARGUMENTS, Push, QUERY_HEIGHT, QUERY_WIDTH, Specialization, VALUES},
+    pipeline::{ComputePipeline, Interface},
+    points,
+    state::Inputs,
+};
+
+const FUNCTIONS: &[u8] = include_bytes!("../shaders/spv/functions.comp.spv");
+
+/// Arguments of a call.
+pub type Arguments = [u32; ARGUMENTS as usize];
+/// Values of a call.
+pub type Values = [u32; VALUES as usize];
+
+/// The functions as they are compiled for some settings.
+#[derive(Debug)]
+pub struct Functions<'a> {
+    pipeline: ComputePipeline,
+    interface: Arc<Interface>,
+    backend: &'a VulkanBackend,
+    settings: Settings,
+}
+
+impl<'a> Functions<'a> {
+    /// Compiles them.
+    pub fn new(backend: &'a VulkanBackend, settings: &Settings) -> Result<Self> {
+        let interface = Arc::clone(backend.state().interface());
+        let pipeline = ComputePipeline::new(&interface, FUNCTIONS, &Specialization::of(settings))?;
+        Ok(Self { pipeline, interface, backend, settings: settings.clone() })
+    }
+
+    /// The values of `function`, a `FUNCTION_` constant of [`layout`](crate::layout), for each of `calls`: words, or bits of
+    /// floats. Tables and constants are those of the scene, the settings and `view`.
+    pub fn call(&self, function: u32, view: &View, calls: &[Arguments]) -> Result<Vec<Values>> {
+        let mut state = self.backend.state();
+        let (width, height) = view.camera.size();
+        let inputs = Inputs { settings: &self.settings, view, size: [width, height], count: width * height };
+        let mut constants = state.prepare(&inputs)?;
+        // The size stays the camera's, which functions read.
+        let extent = points::folded(calls.len());
+        constants.count = calls.len() as u32;
+        constants.mode = function;
+        let context = self.backend.context();
+        let usage = BufferUsageFlags::STORAGE_BUFFER | BufferUsageFlags::SHADER_DEVICE_ADDRESS;
+        let arguments = context.upload("arguments", usage, calls)?;
+        let size = (calls.len() * size_of::<Values>()) as u64;
+        let values = context.buffer("values", size, usage, Location::Readback)?;
+        (constants.inputs, constants.outputs) = (arguments.address(), values.address());
+        state.write_view(&constants);
+        let (scene, view) = (self.backend.tables().address(), state.view_buffer.address());
+        let push = Push { scene, view, origin: [0; 2], extent };
+        context.run(|recorder| {
+            self.pipeline.record(recorder, &self.interface, [QUERY_WIDTH, QUERY_HEIGHT], push);
+            recorder.barrier(Work::Compute, Work::HostRead);
+            Ok(())
+        })?;
+        Ok(values.read(0, calls.len()))
+    }
+}
