@@ -102,6 +102,28 @@ impl Backends {
         Ok(backends)
     }
 
+    /// The same backend with another scene.
+    pub(crate) fn with_scene(&self, scene: Arc<Scene>, control: &Control<'_>) -> Result<Self, VulkanError> {
+        let mut backends = Self {
+            scene,
+            build: self.build,
+            vulkan: None,
+            cpu: OnceLock::new(),
+            steps_in: self.steps_in,
+            reason: self.reason.clone(),
+        };
+        if let Backend::Vulkan(vulkan) = self.current() {
+            match vulkan.with_scene(&backends.scene, control) {
+                Ok(backend) => backends.vulkan = Some(backend),
+                Err(error) => backends.step_in(error)?,
+            }
+        }
+        if backends.vulkan.is_none() {
+            backends.cpu();
+        }
+        Ok(backends)
+    }
+
     /// Who renders now.
     pub(crate) fn current(&self) -> Backend<'_> {
         match &self.vulkan {

@@ -7,6 +7,7 @@ use ambray_core::{
     frame::{Frame, FrameStats},
     query::{QueryPoint, QueryResult},
     settings::{Settings, SettingsError},
+    trace::{Hit, Ray, Trace},
     view::View,
 };
 use ambray_cpu::{BackendError, BuildOptions};
@@ -147,13 +148,22 @@ impl Renderer {
     ///
     /// # Panics
     /// As [`on_cpu`](Self::on_cpu).
-    pub fn open(
-        scene: Scene,
-        options: &RendererOptions,
-        control: Control<'_>,
-    ) -> Result<Self, RenderError> {
+    pub fn open(scene: Scene, options: &RendererOptions, control: Control<'_>) -> Result<Self, RenderError> {
         let scene = Arc::new(scene);
         let backends = Backends::new(Arc::clone(&scene), options, &control)?;
+        Ok(Self { bounds: scene.bounds(), scene, backends })
+    }
+
+    /// Makes another scene ready for the same backend. A device keeps its compiled programs.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open).
+    ///
+    /// # Panics
+    /// As [`on_cpu`](Self::on_cpu).
+    pub fn with_scene(&self, scene: Scene, control: Control<'_>) -> Result<Self, RenderError> {
+        let scene = Arc::new(scene);
+        let backends = self.backends.with_scene(Arc::clone(&scene), &control)?;
         Ok(Self { bounds: scene.bounds(), scene, backends })
     }
 
@@ -165,10 +175,9 @@ impl Renderer {
                 isa: cpu.world().tracer().stats().isa.name(),
                 reason: self.backends.reason().map(str::to_owned),
             },
-            Backend::Vulkan(vulkan) => Machine::Vulkan {
-                device: vulkan.context().report().name.clone(),
-                trace: vulkan.trace_mode(),
-            },
+            Backend::Vulkan(vulkan) => {
+                Machine::Vulkan { device: vulkan.context().report().name.clone(), trace: vulkan.trace_mode() }
+            }
         }
     }
 
@@ -291,11 +300,20 @@ impl Renderer {
         })
     }
 
+    /// The closest hit of each of `rays`.
+    pub fn closest_hits(&self, rays: &[Ray]) -> Result<Vec<Hit>, RenderError> {
+        self.stepping_in(|backend| match backend {
+            Backend::Cpu(cpu) => {
+                let mut hits = vec![Hit::MISS; rays.len()];
+                cpu.world().closest_hits(rays, &mut hits);
+                Ok(hits)
+            }
+            Backend::Vulkan(vulkan) => Ok(vulkan.closest_hits(rays)?),
+        })
+    }
+
     /// Runs `work` on the current backend, and once more on the processor if the device fails and that is wanted.
-    fn stepping_in<T>(
-        &self,
-        work: impl Fn(Backend<'_>) -> Result<T, RenderError>,
-    ) -> Result<T, RenderError> {
+    fn stepping_in<T>(&self, work: impl Fn(Backend<'_>) -> Result<T, RenderError>) -> Result<T, RenderError> {
         match work(self.backends.current()) {
             Err(RenderError::Vulkan(error)) => {
                 self.backends.step_in(error)?;

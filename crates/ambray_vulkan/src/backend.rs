@@ -18,7 +18,7 @@ use ambray_scene::{Scene, surface::Surfaces};
 use crate::{
     Acceleration, AccelerationOptions, AccelerationStats, Context, Culling, Result, TraceMode,
     layout::{Push, Specialization},
-    pipeline::TracePass,
+    pipeline::{ProgramCache, TracePass},
     points, rays, readback,
     schedule::{Pass, Step, StepWork, submissions},
     state::{Inputs, State},
@@ -43,6 +43,8 @@ pub struct VulkanBackend {
     tables: Tables,
     context: Arc<Context>,
     mode: TraceMode,
+    options: VulkanOptions,
+    programs: Arc<ProgramCache>,
 }
 
 impl VulkanBackend {
@@ -56,13 +58,39 @@ impl VulkanBackend {
         options: VulkanOptions,
         control: &Control<'_>,
     ) -> Result<Self> {
+        Self::with_programs(context, scene, options, &Arc::default(), control)
+    }
+
+    /// The same for another scene on the same device. Programs that are compiled stay so.
+    ///
+    /// # Panics
+    /// If an index in the scene is out of range.
+    pub fn with_scene(&self, scene: &Arc<Scene>, control: &Control<'_>) -> Result<Self> {
+        Self::with_programs(&self.context, scene, self.options, &self.programs, control)
+    }
+
+    fn with_programs(
+        context: &Arc<Context>,
+        scene: &Arc<Scene>,
+        options: VulkanOptions,
+        programs: &Arc<ProgramCache>,
+        control: &Control<'_>,
+    ) -> Result<Self> {
         let mode = options.trace.resolve(context)?;
         let surfaces = Surfaces::new(Arc::clone(scene));
         let opaque: Vec<bool> = (0..scene.meshes.len() as u32).map(|mesh| surfaces.is_opaque(mesh)).collect();
         let acceleration = Acceleration::build(context, scene, &opaque, &options.acceleration, control)?;
         let tables = Tables::new(context, scene, acceleration.placements(), acceleration.refs())?;
-        let state = State::new(context, &acceleration, mode)?;
-        Ok(Self { state: Mutex::new(state), acceleration, tables, context: Arc::clone(context), mode })
+        let state = State::new(context, &acceleration, mode, programs)?;
+        Ok(Self {
+            state: Mutex::new(state),
+            acceleration,
+            tables,
+            context: Arc::clone(context),
+            mode,
+            options,
+            programs: Arc::clone(programs),
+        })
     }
 
     /// The device.
@@ -209,10 +237,10 @@ impl VulkanBackend {
     ) -> Result<StageTimes> {
         control.check()?;
         let programs = state.programs(&Specialization::of(settings))?;
-        let submissions = submissions(passes, size, state.budget());
+        let submissions = submissions(passes, size, state.budget);
         let mut times = StageTimes::default();
         for (index, steps) in submissions.iter().enumerate() {
-            let State { commands, top, view_buffer, .. } = &mut *state;
+            let State { commands, top, view_buffer, interface, .. } = &mut *state;
             commands.submit(|recorder| {
                 if index == 0 {
                     top.build(recorder, &self.acceleration, culling);
@@ -229,8 +257,8 @@ impl VulkanBackend {
                     let (scene, view) = (self.tables.address(), view_buffer.address());
                     let push = Push { scene, view, origin, extent };
                     match step {
-                        StepWork::Trace(pass) => programs.trace(recorder, pass, push),
-                        StepWork::Filter => programs.filter(recorder, push),
+                        StepWork::Trace(pass) => programs.trace(recorder, interface, pass, push),
+                        StepWork::Filter => programs.filter(recorder, interface, push),
                     }
                 }
                 if let Some(last) = last {

@@ -12,13 +12,10 @@ use crate::{
     Acceleration, Buffer, CommandSet, Context, DeviceKind, Location, Result, TopLevel, TraceMode,
     constants::{self, SampleTables},
     layout::{self, Specialization},
-    pipeline::{Interface, Programs},
+    pipeline::{Interface, ProgramCache, Programs},
     planes::Planes,
     schedule::Budget,
 };
-
-/// Programs of so many settings are kept.
-const KEPT_PROGRAMS: usize = 8;
 
 /// What a frame or a list of points is evaluated with.
 pub(crate) struct Inputs<'a> {
@@ -39,19 +36,24 @@ pub(crate) struct State {
     pub(crate) commands: CommandSet,
     pub(crate) top: TopLevel,
     pub(crate) view_buffer: Buffer,
+    pub(crate) budget: Budget,
     planes: Option<Planes>,
     samples: Option<(SampleKey, Buffer, Buffer)>,
     lights: Option<(Vec<layout::Light>, Buffer)>,
-    /// The last used comes first.
-    programs: Vec<(Specialization, Arc<Programs>)>,
-    interface: Arc<Interface>,
+    programs: Arc<ProgramCache>,
+    pub(crate) interface: Arc<Interface>,
     context: Arc<Context>,
     mode: TraceMode,
 }
 
 impl State {
     /// `mode` is resolved.
-    pub(crate) fn new(context: &Arc<Context>, acceleration: &Acceleration, mode: TraceMode) -> Result<Self> {
+    pub(crate) fn new(
+        context: &Arc<Context>,
+        acceleration: &Acceleration,
+        mode: TraceMode,
+        programs: &Arc<ProgramCache>,
+    ) -> Result<Self> {
         let top = TopLevel::new(context, acceleration)?;
         let interface = Interface::new(context)?;
         interface.bind(top.handle());
@@ -62,10 +64,11 @@ impl State {
             commands: CommandSet::new(context)?,
             top,
             view_buffer,
+            budget: Budget::of(context.limits(), context.report().kind == DeviceKind::Software),
             planes: None,
             samples: None,
             lights: None,
-            programs: Vec::new(),
+            programs: Arc::clone(programs),
             interface,
             context: Arc::clone(context),
             mode,
@@ -105,28 +108,12 @@ impl State {
     }
 
     /// Programs for these constants.
-    pub(crate) fn programs(&mut self, specialization: &Specialization) -> Result<Arc<Programs>> {
-        let found = self.programs.iter().position(|(kept, _)| kept == specialization);
-        let entry = match found {
-            Some(index) => self.programs.remove(index),
-            None => {
-                let programs = Programs::new(&self.interface, self.mode, specialization)?;
-                self.programs.truncate(KEPT_PROGRAMS - 1);
-                (*specialization, Arc::new(programs))
-            }
-        };
-        let programs = Arc::clone(&entry.1);
-        self.programs.insert(0, entry);
-        Ok(programs)
+    pub(crate) fn programs(&self, specialization: &Specialization) -> Result<Arc<Programs>> {
+        self.programs.get(&self.interface, self.mode, specialization)
     }
 
     pub(crate) const fn interface(&self) -> &Arc<Interface> {
         &self.interface
-    }
-
-    pub(crate) fn budget(&self) -> Budget {
-        let is_software = self.context.report().kind == DeviceKind::Software;
-        Budget::of(self.context.limits(), is_software)
     }
 
     fn samples(&mut self, settings: &Settings) -> Result<(u64, u64)> {

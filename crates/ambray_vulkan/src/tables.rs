@@ -201,6 +201,7 @@ fn shape_instances(scene: &Scene) -> Vec<layout::ShapeInstance> {
         world_from_object: columns(&placed.world_from_object),
         object_from_world: columns(&placed.world_from_object.inverse()),
         normal_from_object: normal_columns(placed.world_from_object.matrix3),
+        reach: placed.reach(&scene.shapes[placed.shape as usize]),
         shape: placed.shape,
         material: placed.material,
     };

@@ -199,6 +199,7 @@ struct ShapeInstance {
     mat4x3 world_from_object;
     mat4x3 object_from_world;
     mat3 normal_from_object;
+    float reach;
     uint shape;
     uint material;
 };

@@ -5,6 +5,7 @@
 #include "scene.glsl"
 #include "shape.glsl"
 #include "texture.glsl"
+#include "triangle.glsl"
 
 // Closest intersection of a ray; `instance` is NONE and `t` FAR on a miss.
 struct Hit {
@@ -31,6 +32,8 @@ struct At {
     uint instance;
     uint material;
     Place place;
+    // Barycentric weights of the second and third corner.
+    vec2 uv;
     // World space.
     vec3 points[3];
     mat3 normal_from_object;
@@ -90,7 +93,7 @@ Place place_in_mesh(uint instance, uint triangle, vec2 uv, float relative_width)
     return Place(mesh, corners, vec3(1.0 - uv.x - uv.y, uv), relative_width);
 }
 
-At at_triangle(Hit hit, float width) {
+At at_triangle(vec3 origin, vec3 direction, Hit hit, float width) {
     Instance instance = Instances(SCENE.instances).at[hit.instance];
     At at;
     at.instance = hit.instance;
@@ -105,10 +108,12 @@ At at_triangle(Hit hit, float width) {
         at.points[i] = transform_point(instance.world_from_object, object[i]);
         at.reach = max(at.reach, magnitude(instance.world_from_object, object[i]));
     }
+    at.uv = refined_barycentrics(origin, direction, at.points, hit.uv);
+    at.place.weights = vec3(1.0 - at.uv.x - at.uv.y, at.uv);
     vec3 e1 = at.points[1] - at.points[0];
     vec3 e2 = at.points[2] - at.points[0];
     // From the first corner along the edges: exact where edges are short and far from the origin.
-    vec2 uv = hit.uv;
+    vec2 uv = at.uv;
     at.position = at.points[0] + e1 * uv.x + e2 * uv.y;
     at.object_position = object[0] + (object[1] - object[0]) * uv.x + (object[2] - object[0]) * uv.y;
     // Edges of tiny triangles would vanish when multiplied; scaled to unit size they do not.
@@ -132,11 +137,12 @@ At at_shape(vec3 origin, vec3 direction, Hit hit) {
     At at;
     at.instance = hit.instance;
     at.material = placed.material;
+    at.uv = vec2(0.0);
     at.place.mesh.first_normal = NONE;
     vec3 world = origin + hit.t * direction;
     at.object_position = shape_project(shape, transform_point(placed.object_from_world, world));
     at.position = transform_point(placed.world_from_object, at.object_position);
-    at.reach = magnitude(placed.world_from_object, at.object_position);
+    at.reach = placed.reach;
     vec3 normal = placed.normal_from_object * shape_normal(shape, at.object_position);
     at.geometric_normal = unit_or(normal, vec3(0.0, 1.0, 0.0));
     return at;
@@ -147,7 +153,7 @@ At at_hit(vec3 origin, vec3 direction, Hit hit, float width) {
     if (is_shape(hit.instance)) {
         return at_shape(origin, direction, hit);
     }
-    return at_triangle(hit, width);
+    return at_triangle(origin, direction, hit, width);
 }
 
 // `v` or `-v`, whichever is on the side of `side`.

@@ -31,7 +31,7 @@ bool trace_any(uint type, Ray ray) {
 // Colours of a surface by the callable shader of its material's kind.
 Shade shade_surface(At at, Hit hit, uint seen) {
     callable = Shade(
-        at.instance, hit.triangle, hit.uv, at.place.relative_width, at.material, at.object_position, seen,
+        at.instance, hit.triangle, at.uv, at.place.relative_width, at.material, at.object_position, seen,
         vec3(0.0), vec3(0.0));
     executeCallableEXT(Materials(SCENE.materials).at[at.material].kind, 1);
     return callable;

@@ -56,7 +56,7 @@ bool trace_any(uint type, Ray ray) {
 
 Shade shade_surface(At at, Hit hit, uint seen) {
     Shade shade = Shade(
-        at.instance, hit.triangle, hit.uv, at.place.relative_width, at.material, at.object_position, seen,
+        at.instance, hit.triangle, at.uv, at.place.relative_width, at.material, at.object_position, seen,
         vec3(0.0), vec3(0.0));
     switch (Materials(SCENE.materials).at[at.material].kind) {
         case MATERIAL_LIT: shade_lit(shade); break;

@@ -179,6 +179,8 @@ structures! {
         object_from_world: [[f32; 3]; 4],
         /// Turns normals; does not keep their length.
         normal_from_object: [[f32; 3]; 3],
+        /// Largest magnitude of the numbers that its points are computed from.
+        reach: f32,
         /// Index of the shape.
         shape: u32,
         /// Index of the material.

@@ -151,7 +151,7 @@ structures! {
 
     /// Push constants of all passes.
     Push {
-        /// Address of the [`SceneTables`].
+        /// Address of the [`SceneTables`](super::SceneTables).
         scene: u64,
         /// Address of the [`View`].
         view: u64,

@@ -1,5 +1,6 @@
 //! The passes as programs of the device: ray-tracing pipelines with their shader binding table, or compute shaders.
 
+mod cache;
 mod compute;
 mod interface;
 mod ray_tracing;
@@ -13,6 +14,7 @@ use crate::{
 };
 
 pub(crate) use compute::ComputePipeline;
+pub(crate) use cache::ProgramCache;
 pub(crate) use interface::Interface;
 
 use ray_tracing::RayTracingPipeline;
@@ -66,7 +68,8 @@ impl TracePass {
 /// The programs of all passes for one choice of settings.
 #[derive(Debug)]
 pub(crate) struct Programs {
-    interface: Arc<Interface>,
+    /// Lives as long as what was made with it.
+    _interface: Arc<Interface>,
     tracing: Tracing,
     filter: ComputePipeline,
 }
@@ -90,7 +93,7 @@ impl Programs {
         } else {
             Tracing::Query(TracePass::ALL.into_iter().map(|p| compute(compute::query(p))).collect::<Result<_>>()?)
         };
-        Ok(Self { interface: Arc::clone(interface), tracing, filter: compute(crate::shaders::FILTER)? })
+        Ok(Self { _interface: Arc::clone(interface), tracing, filter: compute(crate::shaders::FILTER)? })
     }
 
     /// The kind of work that tracing is, for barriers.
@@ -101,20 +104,26 @@ impl Programs {
         }
     }
 
-    /// Records a pass over `push.extent` pixels from `push.origin`.
-    pub(crate) fn trace(&self, recorder: &mut Recorder<'_>, pass: TracePass, push: Push) {
+    /// Records a pass over `push.extent` pixels from `push.origin`, through the structure that `interface` is bound to.
+    pub(crate) fn trace(
+        &self,
+        recorder: &mut Recorder<'_>,
+        interface: &Interface,
+        pass: TracePass,
+        push: Push,
+    ) {
         match &self.tracing {
-            Tracing::Pipeline(pipeline) => pipeline.record(recorder, &self.interface, pass, push),
+            Tracing::Pipeline(pipeline) => pipeline.record(recorder, interface, pass, push),
             Tracing::Query(pipelines) => {
                 let workgroup = [layout::QUERY_WIDTH, layout::QUERY_HEIGHT];
-                pipelines[pass as usize].record(recorder, &self.interface, workgroup, push);
+                pipelines[pass as usize].record(recorder, interface, workgroup, push);
             }
         }
     }
 
     /// Records the filter and composition over `push.extent` pixels from `push.origin`.
-    pub(crate) fn filter(&self, recorder: &mut Recorder<'_>, push: Push) {
+    pub(crate) fn filter(&self, recorder: &mut Recorder<'_>, interface: &Interface, push: Push) {
         let workgroup = [layout::FILTER_WIDTH, layout::FILTER_HEIGHT];
-        self.filter.record(recorder, &self.interface, workgroup, push);
+        self.filter.record(recorder, interface, workgroup, push);
     }
 }

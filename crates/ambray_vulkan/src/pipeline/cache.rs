@@ -1,0 +1,40 @@
+//! Programs that have been compiled, kept for the next frame and the next scene.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::{Interface, Programs, TraceMode};
+use crate::{Result, layout::Specialization};
+
+/// Programs of so many settings are kept.
+const KEPT: usize = 64;
+
+/// Compiled programs of a device. Compiling takes longer than many a frame, and nothing of it depends on the scene.
+#[derive(Debug, Default)]
+pub(crate) struct ProgramCache {
+    /// The last used comes first.
+    programs: Mutex<Vec<Entry>>,
+}
+
+type Entry = ((TraceMode, Specialization), Arc<Programs>);
+
+impl ProgramCache {
+    /// Programs for these constants; `mode` is resolved.
+    pub(crate) fn get(
+        &self,
+        interface: &Arc<Interface>,
+        mode: TraceMode,
+        specialization: &Specialization,
+    ) -> Result<Arc<Programs>> {
+        let key = (mode, *specialization);
+        // The list is always whole, so a panic of another thread does not matter.
+        let mut kept = self.programs.lock().unwrap_or_else(PoisonError::into_inner);
+        let entry = match kept.iter().position(|(other, _)| *other == key) {
+            Some(index) => kept.remove(index),
+            None => (key, Arc::new(Programs::new(interface, mode, specialization)?)),
+        };
+        let programs = Arc::clone(&entry.1);
+        kept.insert(0, entry);
+        kept.truncate(KEPT);
+        Ok(programs)
+    }
+}
