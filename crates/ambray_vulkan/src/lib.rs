@@ -29,8 +29,8 @@ pub use acceleration::{
 pub use backend::{VulkanBackend, VulkanOptions};
 pub use commands::{CommandSet, Recorder, Timing, Work};
 pub use context::{
-    Capability, Context, DeviceKind, DeviceOptions, DeviceReport, Limits, Live, Need, VALIDATION_LOG, choose,
-    probe,
+    Capability, Context, DeviceKind, DeviceOptions, DeviceReport, Limits, Live, Need, VALIDATION_LOG,
+    ValidationLog, choose, probe,
 };
 pub use error::{MemorySide, Result, VulkanError};
 pub use memory::{Buffer, Location};

@@ -1,4 +1,4 @@
-//! Single GLSL functions, called from tests that compare them with their twins in Rust.
+//! What tests need and nothing else: single GLSL functions, to be compared with their twins in Rust, and small submissions.
 
 use std::sync::Arc;
 
@@ -63,5 +63,12 @@ impl<'a> Functions<'a> {
             Ok(())
         })?;
         Ok(values.read(0, calls.len()))
+    }
+}
+
+impl VulkanBackend {
+    /// Cuts frames into submissions of at most `rays` rays, and of one row at least.
+    pub fn limit_submissions(&self, rays: u64) {
+        self.state().budget.cost = rays;
     }
 }

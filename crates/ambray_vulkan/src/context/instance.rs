@@ -18,12 +18,27 @@ pub const VALIDATION_LOG: &str = "ambray_vulkan::validation";
 /// What the validation layer said.
 type Messages = Mutex<Vec<String>>;
 
+/// The messages of the validation layer, also those that come when device and instance are destroyed: then it names
+/// everything that was not.
+#[derive(Clone, Debug)]
+pub struct ValidationLog {
+    messages: Arc<Messages>,
+}
+
+impl ValidationLog {
+    /// Warnings and errors so far, one line each; at most 1000 are kept.
+    #[must_use]
+    pub fn messages(&self) -> Vec<String> {
+        self.messages.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+}
+
 /// A Vulkan 1.2 instance and the library it came from.
 pub(crate) struct Instance {
     pub(crate) raw: ash::Instance,
     pub(crate) has_debug_utils: bool,
     messenger: Option<(ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
-    messages: Arc<Messages>,
+    log: ValidationLog,
     /// Unloads the library when dropped, hence after all else.
     _entry: ash::Entry,
 }
@@ -68,18 +83,18 @@ impl Instance {
                 info = info.push_next(&mut checks);
             }
         }
+        let log = ValidationLog { messages: Arc::default() };
+        // Chained to the instance's, it listens while that is made and destroyed.
+        let mut at_the_ends = listener(&log);
+        if debug_utils {
+            info = info.push_next(&mut at_the_ends);
+        }
         let info = info.enabled_extension_names(&names).enabled_layer_names(&layers);
         // SAFETY: every pointer in `info` is to a local that lives until the call returns, and the layers and extensions
-        // named in it were found above.
+        // named in it were found above. The list of messages, which is used later, outlives the instance (see `Drop`).
         let raw =
             unsafe { entry.create_instance(&info, None) }.map_err(VulkanError::of("vkCreateInstance"))?;
-        let mut instance = Self {
-            raw,
-            has_debug_utils: debug_utils,
-            messenger: None,
-            messages: Arc::default(),
-            _entry: entry,
-        };
+        let mut instance = Self { raw, has_debug_utils: debug_utils, messenger: None, log, _entry: entry };
         if debug_utils {
             instance.listen()?;
         }
@@ -91,16 +106,7 @@ impl Instance {
     /// The messenger has a create-info of its own: one that was chained to the instance's would carry its chain along.
     fn listen(&mut self) -> Result<()> {
         let loader = ext::debug_utils::Instance::new(&self._entry, &self.raw);
-        let info = vk::DebugUtilsMessengerCreateInfoEXT::default()
-            .message_severity(
-                vk::DebugUtilsMessageSeverityFlagsEXT::WARNING | vk::DebugUtilsMessageSeverityFlagsEXT::ERROR,
-            )
-            .message_type(
-                vk::DebugUtilsMessageTypeFlagsEXT::VALIDATION
-                    | vk::DebugUtilsMessageTypeFlagsEXT::PERFORMANCE,
-            )
-            .pfn_user_callback(Some(collect))
-            .user_data(Arc::as_ptr(&self.messages).cast_mut().cast());
+        let info = listener(&self.log);
         // SAFETY: the user data is the shared list, which is dropped after the messenger is destroyed (see `Drop`); the
         // callback only forms a shared reference to it.
         let messenger = unsafe { loader.create_debug_utils_messenger(&info, None) }
@@ -109,9 +115,9 @@ impl Instance {
         Ok(())
     }
 
-    /// What the validation layer said so far.
-    pub(crate) fn messages(&self) -> Vec<String> {
-        self.messages.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    /// What the validation layer says.
+    pub(crate) const fn log(&self) -> &ValidationLog {
+        &self.log
     }
 
     /// All physical devices, in the order of the loader: a device's number is its index.
@@ -136,6 +142,19 @@ impl Drop for Instance {
             self.raw.destroy_instance(None);
         }
     }
+}
+
+/// Collects warnings and errors in `log`, which must outlive what is made from this.
+fn listener(log: &ValidationLog) -> vk::DebugUtilsMessengerCreateInfoEXT<'static> {
+    vk::DebugUtilsMessengerCreateInfoEXT::default()
+        .message_severity(
+            vk::DebugUtilsMessageSeverityFlagsEXT::WARNING | vk::DebugUtilsMessageSeverityFlagsEXT::ERROR,
+        )
+        .message_type(
+            vk::DebugUtilsMessageTypeFlagsEXT::VALIDATION | vk::DebugUtilsMessageTypeFlagsEXT::PERFORMANCE,
+        )
+        .pfn_user_callback(Some(collect))
+        .user_data(Arc::as_ptr(&log.messages).cast_mut().cast())
 }
 
 fn extension_names(entry: &ash::Entry, layer: Option<&CStr>) -> Result<Vec<vk::ExtensionProperties>> {

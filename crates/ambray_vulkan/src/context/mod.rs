@@ -15,7 +15,7 @@ use gpu_allocator::vulkan::Allocator;
 
 pub use self::choose::choose;
 use self::instance::Instance;
-pub use self::instance::VALIDATION_LOG;
+pub use self::instance::{VALIDATION_LOG, ValidationLog};
 pub use self::limits::Limits;
 pub use self::probe::{Capability, DeviceKind, DeviceReport, Need, probe};
 use crate::error::Result;
@@ -139,7 +139,13 @@ impl Context {
     /// Warnings and errors of the validation layer so far, one line each; at most 1000 are kept.
     #[must_use]
     pub fn validation_messages(&self) -> Vec<String> {
-        self.instance.messages()
+        self.instance.log().messages()
+    }
+
+    /// The messages of the validation layer, to be read when the context is gone.
+    #[must_use]
+    pub fn validation_log(&self) -> ValidationLog {
+        self.instance.log().clone()
     }
 
     /// What has been made and not been dropped.
