@@ -236,7 +236,8 @@ impl VulkanBackend {
         control: Control<'_>,
     ) -> Result<StageTimes> {
         control.check()?;
-        let programs = state.programs(&Specialization::of(settings))?;
+        let [_, masked, shapes] = self.acceleration.stats().by_kind.map(|count| count > 0);
+        let programs = state.programs(&Specialization::of(settings, masked, shapes))?;
         let submissions = submissions(passes, size, state.budget);
         let mut times = StageTimes::default();
         for (index, steps) in submissions.iter().enumerate() {

@@ -3,7 +3,7 @@
 use ambray_core::settings::Settings;
 
 use crate::{
-    layout::Specialization,
+    layout::is_after_filter,
     planes::Plane::{
         self, Albedo, Ambient, Beauty, Bent, Direct, Emission, Filtered, FilteredBent, Geometric, Positions,
         Second, Shading, SmoothNormals, Tallies,
@@ -33,7 +33,7 @@ impl PassBytes {
 /// Of each pass of a frame with `settings`, in the order in which they run.
 #[must_use]
 pub fn bytes_per_pixel(settings: &Settings) -> [PassBytes; 4] {
-    let is_after_filter = Specialization::of(settings).after_filter == 1;
+    let is_after_filter = is_after_filter(settings);
     PASSES.map(|Pass { name, reads, writes }| {
         let bytes = |planes: &[Plane]| -> u64 {
             let used = planes.iter().filter(|&&plane| name != FILTER || plane != Second || is_after_filter);

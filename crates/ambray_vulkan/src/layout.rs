@@ -14,6 +14,7 @@ pub use scene::{
     TextureUse,
 };
 pub use specialization::Specialization;
+pub(crate) use specialization::is_after_filter;
 pub use view::{FilterConstants, GatherConstants, Push, Ray, RayHit, Tally, View};
 
 use declare::constants;

@@ -13,7 +13,7 @@ use glam::{Vec3, Vec4, Vec4Swizzles};
 
 use crate::{
     Context, Location, Result,
-    layout::{NONE, Specialization, Tally},
+    layout::{NONE, Tally, is_after_filter},
     planes::{Plane, Transfer},
     state::State,
 };
@@ -46,7 +46,7 @@ pub(crate) fn frame(context: &Arc<Context>, state: &State, settings: &Settings, 
     reader.each(Plane::Direct, &mut gbuffer, |pixel, v| pixel.direct = v.xyz())?;
 
     let mut ambient_raw = reader.vectors(Plane::Ambient)?;
-    if Specialization::of(settings).after_filter == 1 {
+    if is_after_filter(settings) {
         let second = reader.vectors(Plane::Second)?;
         ambient_raw.iter_mut().zip(second).for_each(|(raw, second)| *raw = smaller_batch(*raw, second));
     }

@@ -33,7 +33,7 @@ impl<'a> Functions<'a> {
     /// Compiles them.
     pub fn new(backend: &'a VulkanBackend, settings: &Settings) -> Result<Self> {
         let interface = Arc::clone(backend.state().interface());
-        let pipeline = ComputePipeline::new(&interface, FUNCTIONS, &Specialization::of(settings))?;
+        let pipeline = ComputePipeline::new(&interface, FUNCTIONS, &Specialization::of(settings, true, true))?;
         Ok(Self { pipeline, interface, backend, settings: settings.clone() })
     }
 

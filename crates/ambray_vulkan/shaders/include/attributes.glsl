@@ -29,9 +29,8 @@ vec4 read_texture(Place place, TextureUse use) {
     return sample_texture(use.texture, uv, place.relative_width * sqrt(uv_area));
 }
 
-// Base colour × texture × vertex colour.
-vec3 base_color(Place place, Material material) {
-    vec3 color = material.base_color.rgb;
+// `color` × texture × vertex colour.
+vec3 textured(Place place, Material material, vec3 color) {
     if (material.base_color_texture.texture != NONE) {
         color *= read_texture(place, material.base_color_texture).rgb;
     }

@@ -101,6 +101,8 @@ layout(constant_id = 8) const uint AFTER_FILTER = 0u;
 layout(constant_id = 9) const uint NORMALS = 0u;
 layout(constant_id = 10) const uint WINDOW = 2u;
 layout(constant_id = 11) const uint TEST = 0u;
+layout(constant_id = 12) const uint MASKED = 1u;
+layout(constant_id = 13) const uint SHAPES = 1u;
 
 struct SceneTables {
     uint64_t placements;

@@ -1,4 +1,4 @@
-// Shading by kind of material: what the callable shaders compute. Ray queries choose by a switch instead.
+// Shading by kind of material: what the callable shaders compute. Ray queries branch instead.
 #ifndef MATERIAL_GLSL
 #define MATERIAL_GLSL
 
@@ -19,45 +19,38 @@ struct Shade {
     vec3 emission;
 };
 
-vec3 shade_base_color(Shade shade, Material material) {
+vec3 shade_textured(Shade shade, Material material, vec3 color) {
     if (is_shape(shade.instance)) {
-        return material.base_color.rgb;
+        return color;
     }
-    return base_color(place_in_mesh(shade.instance, shade.triangle, shade.uv, shade.relative_width), material);
+    Place place = place_in_mesh(shade.instance, shade.triangle, shade.uv, shade.relative_width);
+    return textured(place, material, color);
 }
 
 vec3 shade_emission(Shade shade, Material material) {
-    if (shade.seen == 0u || is_shape(shade.instance)) {
+    if (is_shape(shade.instance)) {
         return material.emission;
     }
     return emission(place_in_mesh(shade.instance, shade.triangle, shade.uv, shade.relative_width), material);
 }
 
-void shade_lit(inout Shade shade) {
-    shade.albedo = shade_base_color(shade, Materials(SCENE.materials).at[shade.material]);
-    shade.emission = vec3(0.0);
-}
-
-void shade_emissive(inout Shade shade) {
+// Shades a material of the given kind: one branch where the kind is a constant, as in the callable shaders.
+void shade_kind(uint kind, inout Shade shade) {
     Material material = Materials(SCENE.materials).at[shade.material];
-    shade.albedo = shade_base_color(shade, material);
-    shade.emission = shade_emission(shade, material);
-}
-
-// Shows its base colour whatever the light; light bounces off it as off any surface (ambray_core::compose).
-void shade_unlit(inout Shade shade) {
-    shade_emissive(shade);
-    if (shade.seen == 1u) {
+    vec3 color = material.base_color.rgb;
+    if (kind == MATERIAL_CHECKER) {
+        color = checker_color(color, material.checker_color, material.checker_size, shade.object_position);
+    }
+    shade.albedo = shade_textured(shade, material, color);
+    shade.emission = vec3(0.0);
+    if (kind != MATERIAL_LIT && shade.seen == 1u) {
+        shade.emission = shade_emission(shade, material);
+    }
+    // Shows its base colour whatever the light; light bounces off it as off any surface (ambray_core::compose).
+    if (kind == MATERIAL_UNLIT && shade.seen == 1u) {
         shade.emission += shade.albedo;
         shade.albedo = vec3(0.0);
     }
-}
-
-void shade_checker(inout Shade shade) {
-    Material material = Materials(SCENE.materials).at[shade.material];
-    vec3 base = shade_base_color(shade, material);
-    shade.albedo = checker_color(base, material.checker_color, material.checker_size, shade.object_position);
-    shade.emission = shade_emission(shade, material);
 }
 
 #endif

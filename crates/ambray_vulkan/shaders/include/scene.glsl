@@ -41,7 +41,7 @@ uvec2 resolve(uint custom_index, uint primitive) {
 }
 
 bool is_shape(uint instance) {
-    return instance >= SCENE.mesh_instances;
+    return SHAPES != 0u && instance >= SCENE.mesh_instances;
 }
 
 ShapeInstance shape_instance(uint instance) {

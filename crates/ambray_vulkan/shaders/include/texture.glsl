@@ -7,8 +7,7 @@
 
 // The two texels that a coordinate falls between along one axis, and the weight of the second.
 struct Taps {
-    uint first;
-    uint second;
+    uvec2 texels;
     float share;
 };
 
@@ -45,12 +44,11 @@ Taps taps(float coordinate, uint size, uint wrap, uint filter_kind) {
     float x = wrap_reduce(wrap, coordinate) * float(size);
     if (filter_kind == TEXEL_NEAREST) {
         uint texel = wrap_texel(wrap, int(floor(x)), int(size));
-        return Taps(texel, texel, 0.0);
+        return Taps(uvec2(texel), 0.0);
     }
     float left = floor(x - 0.5);
-    uint first = wrap_texel(wrap, int(left), int(size));
-    uint second = wrap_texel(wrap, int(left) + 1, int(size));
-    return Taps(first, second, x - 0.5 - left);
+    uvec2 texels = uvec2(wrap_texel(wrap, int(left), int(size)), wrap_texel(wrap, int(left) + 1, int(size)));
+    return Taps(texels, x - 0.5 - left);
 }
 
 vec4 texel(Texture texture_info, ImageLevel level, uint x, uint y) {
@@ -64,18 +62,23 @@ vec4 texel(Texture texture_info, ImageLevel level, uint x, uint y) {
     return unit;
 }
 
+// Loops rather than calls, since compilers copy what is called: one copy of a texel's code is enough.
 vec4 at_level(Texture texture_info, uint number, uint filter_kind, vec2 uv) {
     ImageLevel level = Levels(SCENE.levels).at[texture_info.first_level + number];
     Taps u = taps(uv.x, level.size.x, texture_info.wrap.x, filter_kind);
     Taps v = taps(uv.y, level.size.y, texture_info.wrap.y, filter_kind);
-    vec4 corner = texel(texture_info, level, u.first, v.first);
-    if (filter_kind == TEXEL_NEAREST) {
-        return corner;
+    uint side = filter_kind == TEXEL_NEAREST ? 1u : 2u;
+    vec4 rows[2];
+    rows[1] = vec4(0.0);
+    for (uint y = 0u; y < side; ++y) {
+        vec4 left = vec4(0.0);
+        for (uint x = 0u; x < side; ++x) {
+            vec4 read = texel(texture_info, level, u.texels[x], v.texels[y]);
+            left = x == 0u ? read : mix(left, read, u.share);
+        }
+        rows[y] = left;
     }
-    vec4 upper = mix(corner, texel(texture_info, level, u.second, v.first), u.share);
-    vec4 lower = mix(
-        texel(texture_info, level, u.first, v.second), texel(texture_info, level, u.second, v.second), u.share);
-    return mix(upper, lower, v.share);
+    return side == 1u ? rows[0] : mix(rows[0], rows[1], v.share);
 }
 
 // Linear RGBA at `uv` for a footprint of `width` texture units.
@@ -83,24 +86,26 @@ vec4 sample_texture(uint number, vec2 uv, float width) {
     Texture texture_info = Textures(SCENE.textures).at[number];
     uvec2 full = Levels(SCENE.levels).at[texture_info.first_level].size;
     float texels_wide = width * sqrt(float(full.x) * float(full.y));
-    if (!(texels_wide > 1.0)) {
-        return at_level(texture_info, 0u, texture_info.mag, uv);
+    uint filter_kind = texture_info.mag;
+    uint fine = 0u;
+    float share = 0.0;
+    if (texels_wide > 1.0) {
+        filter_kind = texture_info.min;
+        float level = min(log2(texels_wide), float(texture_info.level_count - 1u));
+        if (texture_info.mip == TEXEL_NEAREST) {
+            fine = uint(level + 0.5);
+        } else if (texture_info.mip == TEXEL_LINEAR) {
+            fine = uint(level);
+            share = fract(level);
+        }
     }
-    float level = min(log2(texels_wide), float(texture_info.level_count - 1u));
-    if (texture_info.mip == NONE) {
-        return at_level(texture_info, 0u, texture_info.min, uv);
+    vec4 color = vec4(0.0);
+    uint levels = share == 0.0 ? 1u : 2u;
+    for (uint i = 0u; i < levels; ++i) {
+        vec4 read = at_level(texture_info, min(fine + i, texture_info.level_count - 1u), filter_kind, uv);
+        color = i == 0u ? read : mix(color, read, share);
     }
-    if (texture_info.mip == TEXEL_NEAREST) {
-        return at_level(texture_info, uint(level + 0.5), texture_info.min, uv);
-    }
-    uint lower = uint(level);
-    float share = fract(level);
-    vec4 fine = at_level(texture_info, lower, texture_info.min, uv);
-    if (share == 0.0) {
-        return fine;
-    }
-    vec4 coarse = at_level(texture_info, min(lower + 1u, texture_info.level_count - 1u), texture_info.min, uv);
-    return mix(fine, coarse, share);
+    return color;
 }
 
 // Alpha at `uv` of the full image, magnified.

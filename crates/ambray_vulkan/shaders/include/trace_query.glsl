@@ -1,4 +1,4 @@
-// Tracing by ray queries, and shading by a switch: the twin of trace_pipeline.glsl for compute shaders.
+// Tracing by ray queries, and shading by branches: the twin of trace_pipeline.glsl for compute shaders.
 #ifndef TRACE_QUERY_GLSL
 #define TRACE_QUERY_GLSL
 
@@ -18,10 +18,10 @@ Hit trace(uint flags, uint type, Ray ray) {
         uvec2 reference = resolve(custom_index, primitive);
         if (rayQueryGetIntersectionTypeEXT(query, false) == gl_RayQueryCandidateIntersectionTriangleEXT) {
             vec2 uv = rayQueryGetIntersectionBarycentricsEXT(query, false);
-            if (accepts_triangle(reference.x, reference.y, uv, ray.seed)) {
+            if (MASKED != 0u && accepts_triangle(reference.x, reference.y, uv, ray.seed)) {
                 rayQueryConfirmIntersectionEXT(query);
             }
-        } else {
+        } else if (SHAPES != 0u) {
             bool committed =
                 rayQueryGetIntersectionTypeEXT(query, true) != gl_RayQueryCommittedIntersectionNoneEXT;
             float nearest = committed ? rayQueryGetIntersectionTEXT(query, true) : ray.t_max;
@@ -58,12 +58,7 @@ Shade shade_surface(At at, Hit hit, uint seen) {
     Shade shade = Shade(
         at.instance, hit.triangle, at.uv, at.place.relative_width, at.material, at.object_position, seen,
         vec3(0.0), vec3(0.0));
-    switch (Materials(SCENE.materials).at[at.material].kind) {
-        case MATERIAL_LIT: shade_lit(shade); break;
-        case MATERIAL_UNLIT: shade_unlit(shade); break;
-        case MATERIAL_EMISSIVE: shade_emissive(shade); break;
-        default: shade_checker(shade); break;
-    }
+    shade_kind(Materials(SCENE.materials).at[at.material].kind, shade);
     return shade;
 }
 

@@ -49,13 +49,16 @@ specialization! {
     window WINDOW = 2,
     /// `TEST_` constant.
     test TEST = 0,
+    /// 1 where the scene has triangles that are not opaque.
+    masked MASKED = 1,
+    /// 1 where the scene has shapes.
+    shapes SHAPES = 1,
 }
 
 impl Specialization {
-    /// The constants for `settings`.
+    /// The constants for `settings`, in a scene that has triangles which are not opaque, and shapes, as said.
     #[must_use]
-    pub fn of(settings: &Settings) -> Self {
-        let after_filter = settings.thin != Thin::Off && settings.thin_minimum == ThinMinimum::AfterFilter;
+    pub fn of(settings: &Settings, masked: bool, shapes: bool) -> Self {
         Self {
             spp: settings.spp,
             sampling: settings.sampling as u32,
@@ -65,10 +68,17 @@ impl Specialization {
             source: settings.radiance_source as u32,
             thin: settings.thin as u32,
             thin_edge: settings.thin_edge.into(),
-            after_filter: after_filter.into(),
+            after_filter: is_after_filter(settings).into(),
             normals: settings.normals as u32,
             window: settings.filter as u32,
             test: settings.filter_test as u32,
+            masked: masked.into(),
+            shapes: shapes.into(),
         }
     }
+}
+
+/// Whether the minimum of both batches is taken after the filter.
+pub(crate) fn is_after_filter(settings: &Settings) -> bool {
+    settings.thin != Thin::Off && settings.thin_minimum == ThinMinimum::AfterFilter
 }
