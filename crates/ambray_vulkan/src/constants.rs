@@ -95,9 +95,14 @@ impl SampleTables {
             Sampling::Same => 1,
             Sampling::Random | Sampling::Independent => 0,
         };
-        let spp = settings.spp;
         let sets =
-            SampleSets::new(settings.sampling, settings.sequence, spp, settings.frame, settings.seed);
+            SampleSets::new(settings.sampling, settings.sequence, settings.spp, settings.frame, settings.seed);
+        Self::of_sets(&sets, classes)
+    }
+
+    /// Tables of the first `classes` of `sets`.
+    pub(crate) fn of_sets(sets: &SampleSets, classes: u32) -> Self {
+        let spp = sets.spp();
         let mut tables = Self { directions: Vec::new(), by_azimuth: Vec::new() };
         for class in 0..classes as u8 {
             let key = PixelKey { class, hash: 0 };

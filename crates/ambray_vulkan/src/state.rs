@@ -29,6 +29,10 @@ pub(crate) struct Inputs<'a> {
 /// What decides the sample tables.
 type SampleKey = (Sampling, Sequence, u32, u32, u32);
 
+const fn sample_key(settings: &Settings) -> SampleKey {
+    (settings.sampling, settings.sequence, settings.spp, settings.frame, settings.seed)
+}
+
 /// Used by one frame at a time.
 #[derive(Debug)]
 pub(crate) struct State {
@@ -117,19 +121,21 @@ impl State {
     }
 
     fn samples(&mut self, settings: &Settings) -> Result<(u64, u64)> {
-        let key: SampleKey =
-            (settings.sampling, settings.sequence, settings.spp, settings.frame, settings.seed);
         if let Some((kept, directions, by_azimuth)) = &self.samples
-            && *kept == key
+            && *kept == sample_key(settings)
         {
             return Ok((directions.address(), by_azimuth.address()));
         }
-        let tables = SampleTables::of(settings);
+        self.set_samples(settings, &SampleTables::of(settings))
+    }
+
+    /// Uploads `tables` as those of `settings`; returns their addresses.
+    pub(crate) fn set_samples(&mut self, settings: &Settings, tables: &SampleTables) -> Result<(u64, u64)> {
         let usage = BufferUsageFlags::STORAGE_BUFFER | BufferUsageFlags::SHADER_DEVICE_ADDRESS;
         let directions = self.context.upload("sample directions", usage, &tables.directions)?;
         let by_azimuth = self.context.upload("samples by azimuth", usage, &tables.by_azimuth)?;
         let addresses = (directions.address(), by_azimuth.address());
-        self.samples = Some((key, directions, by_azimuth));
+        self.samples = Some((sample_key(settings), directions, by_azimuth));
         Ok(addresses)
     }
 

@@ -1,12 +1,15 @@
-//! What tests need and nothing else: single GLSL functions, to be compared with their twins in Rust, and small submissions.
+//! What tests need and nothing else: single GLSL functions, to be compared with their twins in Rust, small submissions, and
+//! given samples.
 
 use std::sync::Arc;
 
-use ambray_core::{settings::Settings, view::View};
+use ambray_core::{sampling::SampleSets, settings::Settings, view::View};
 use ash::vk::BufferUsageFlags;
+use glam::Vec2;
 
 use crate::{
     Location, Result, VulkanBackend, Work,
+    constants::SampleTables,
     layout::{ARGUMENTS, Push, QUERY_HEIGHT, QUERY_WIDTH, Specialization, VALUES},
     pipeline::{ComputePipeline, Interface},
     points,
@@ -70,5 +73,11 @@ impl VulkanBackend {
     /// Cuts frames into submissions of at most `rays` rays, and of one row at least.
     pub fn limit_submissions(&self, rays: u64) {
         self.state().budget.cost = rays;
+    }
+
+    /// Takes the same points of the unit square for every pixel, as long as the sampling of `settings` stays.
+    pub fn give_samples(&self, settings: &Settings, points: &[Vec2]) -> Result<()> {
+        let tables = SampleTables::of_sets(&SampleSets::from_points(points), 1);
+        self.state().set_samples(settings, &tables).map(|_| ())
     }
 }
