@@ -13,6 +13,14 @@ if ! command -v c++ >/dev/null; then
   $sudo apt-get install -y -qq --no-install-recommends g++
 fi
 
+# Lavapipe stands in for a graphics card, so that the tests of the Vulkan backend run everywhere and the same. With
+# AMBRAY_VULKAN=hardware they run on the device that the system prefers.
+scripts/vulkan.sh
+if [ "${AMBRAY_VULKAN:-lavapipe}" != hardware ] && [ -z "${VK_DRIVER_FILES:-}" ]; then
+  lavapipe=$(compgen -G '/usr/share/vulkan/icd.d/lvp_icd*.json' | head -n 1 || true)
+  if [ -n "$lavapipe" ]; then export VK_DRIVER_FILES=$lavapipe; fi
+fi
+
 step "formatting"
 if cargo fmt --version >/dev/null 2>&1; then cargo fmt --all --check; else echo "skipped: no rustfmt"; fi
 
