@@ -9,8 +9,11 @@ driver=mesa-vulkan-drivers
 packages=(libvulkan1 vulkan-validationlayers)
 
 give_up() {
+  if [ "${AMBRAY_REQUIRE_VULKAN:-0}" = 1 ]; then
+    echo "$1, and AMBRAY_REQUIRE_VULKAN=1" >&2
+    exit 1
+  fi
   echo "$1: the tests of the Vulkan backend are skipped"
-  [ "${AMBRAY_REQUIRE_VULKAN:-0}" = 1 ] && exit 1
   exit 0
 }
 
