@@ -161,7 +161,8 @@ impl VulkanBackend {
             let constants = state.prepare(&inputs)?;
             points::write(&self.context, &mut state, settings, chunk)?;
             state.write_view(&constants);
-            let passes = [Pass { work: StepWork::Trace(TracePass::Ambient), cost: ambient_cost(settings, view) }];
+            let passes =
+                [Pass { work: StepWork::Trace(TracePass::Ambient), cost: ambient_cost(settings, view) }];
             let share = chunk.len() as f32 / points.len() as f32;
             let done = results.len() as f32 / points.len() as f32;
             let progress = |part: f32| (control.progress)(done + share * part);
@@ -252,7 +253,10 @@ impl VulkanBackend {
                 for &Step { work: step, origin, extent } in steps {
                     if last.is_some_and(|last| last != step) {
                         recorder.timestamp(label(last.unwrap_or(step)));
-                        recorder.barrier(work, if step == StepWork::Filter { crate::Work::Compute } else { work });
+                        recorder.barrier(
+                            work,
+                            if step == StepWork::Filter { crate::Work::Compute } else { work },
+                        );
                     }
                     last = Some(step);
                     let (scene, view) = (self.tables.address(), view_buffer.address());
@@ -293,7 +297,8 @@ fn ambient_cost(settings: &Settings, view: &View) -> u64 {
         Thin::Paper => spp * (spp - 1) / 2,
         Thin::Sheet => spp / 2,
     };
-    let is_lit = settings.near_radiance != NearRadiance::Off && settings.radiance_source == RadianceSource::Lit;
+    let is_lit =
+        settings.near_radiance != NearRadiance::Off && settings.radiance_source == RadianceSource::Lit;
     let shadows = if is_lit { view.lights.len() as u64 } else { 0 };
     (spp + chords) * (1 + shadows)
 }

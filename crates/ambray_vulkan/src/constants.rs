@@ -95,8 +95,13 @@ impl SampleTables {
             Sampling::Same => 1,
             Sampling::Random | Sampling::Independent => 0,
         };
-        let sets =
-            SampleSets::new(settings.sampling, settings.sequence, settings.spp, settings.frame, settings.seed);
+        let sets = SampleSets::new(
+            settings.sampling,
+            settings.sequence,
+            settings.spp,
+            settings.frame,
+            settings.seed,
+        );
         Self::of_sets(&sets, classes)
     }
 

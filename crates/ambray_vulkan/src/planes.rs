@@ -141,7 +141,12 @@ impl Transfer {
     }
 
     /// The first `count` entries of `plane`.
-    pub(crate) fn read<T: Pod>(&self, context: &Arc<Context>, plane: &Buffer, count: usize) -> Result<Vec<T>> {
+    pub(crate) fn read<T: Pod>(
+        &self,
+        context: &Arc<Context>,
+        plane: &Buffer,
+        count: usize,
+    ) -> Result<Vec<T>> {
         let mut values = vec![T::zeroed(); count];
         let mut offset = 0;
         for part in bytemuck::cast_slice_mut::<T, u8>(&mut values).chunks_mut(self.buffer.size() as usize) {
@@ -159,7 +164,12 @@ impl Transfer {
     }
 
     /// Writes `values` to the beginning of `plane`.
-    pub(crate) fn write<T: Pod>(&mut self, context: &Arc<Context>, plane: &Buffer, values: &[T]) -> Result<()> {
+    pub(crate) fn write<T: Pod>(
+        &mut self,
+        context: &Arc<Context>,
+        plane: &Buffer,
+        values: &[T],
+    ) -> Result<()> {
         let mut offset = 0;
         for part in bytemuck::cast_slice::<T, u8>(values).chunks(self.buffer.size() as usize) {
             self.buffer.write(0, part);

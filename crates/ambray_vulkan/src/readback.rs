@@ -19,7 +19,12 @@ use crate::{
 };
 
 /// Copies everything; the times of the statistics are still to be filled in.
-pub(crate) fn frame(context: &Arc<Context>, state: &State, settings: &Settings, view: &View) -> Result<Frame> {
+pub(crate) fn frame(
+    context: &Arc<Context>,
+    state: &State,
+    settings: &Settings,
+    view: &View,
+) -> Result<Frame> {
     let (width, height) = view.camera.size();
     let count = width as usize * height as usize;
     let reader = Reader::new(context, state, count)?;

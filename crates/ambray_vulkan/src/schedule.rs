@@ -75,13 +75,14 @@ fn rectangles(size: [u32; 2], cost: u64, budget: Budget) -> impl Iterator<Item =
     let [width, height] = size;
     let pixels = (budget.cost / cost.max(1)).min(budget.pixels).max(1);
     let columns = u64::from(width).min(pixels).min(u64::from(budget.side)) as u32;
-    let rows = (pixels / u64::from(columns.max(1))).clamp(1, u64::from(height.min(budget.side).max(1))) as u32;
+    let rows =
+        (pixels / u64::from(columns.max(1))).clamp(1, u64::from(height.min(budget.side).max(1))) as u32;
     // Workgroups of the filter and of ray queries should be full.
     let rows = if rows >= 8 { rows / 8 * 8 } else { rows };
     (0..height).step_by(rows as usize).flat_map(move |y| {
-        (0..width).step_by(columns.max(1) as usize).map(move |x| {
-            ([x, y], [columns.min(width - x), rows.min(height - y)])
-        })
+        (0..width)
+            .step_by(columns.max(1) as usize)
+            .map(move |x| ([x, y], [columns.min(width - x), rows.min(height - y)]))
     })
 }
 
@@ -97,7 +98,8 @@ mod tests {
 
     #[test]
     fn each_pass_covers_each_pixel_once_in_order() {
-        for (cost, pixels, side) in [(1 << 20, 1 << 30, 65535), (1000, 1 << 30, 64), (7, 100, 16), (1, 1, 1)] {
+        for (cost, pixels, side) in [(1 << 20, 1 << 30, 65535), (1000, 1 << 30, 64), (7, 100, 16), (1, 1, 1)]
+        {
             let budget = Budget { cost, pixels, side };
             let size = [53, 37];
             let steps: Vec<_> = submissions(&PASSES, size, budget).concat();

@@ -52,7 +52,8 @@ impl Tables {
             refs: upload.table("triangle references", refs)?,
             instances: upload.table("instances", &instances(scene))?,
             meshes: upload.table("meshes", &vertices.meshes)?,
-            materials: upload.table("materials", &scene.materials.iter().map(material).collect::<Vec<_>>())?,
+            materials: upload
+                .table("materials", &scene.materials.iter().map(material).collect::<Vec<_>>())?,
             textures: upload.table("textures", &textures)?,
             levels: upload.table("image levels", &images.levels)?,
             texels: upload.table("texels", &images.texels)?,

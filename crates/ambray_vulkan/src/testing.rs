@@ -36,7 +36,8 @@ impl<'a> Functions<'a> {
     /// Compiles them.
     pub fn new(backend: &'a VulkanBackend, settings: &Settings) -> Result<Self> {
         let interface = Arc::clone(backend.state().interface());
-        let pipeline = ComputePipeline::new(&interface, FUNCTIONS, &Specialization::of(settings, true, true))?;
+        let pipeline =
+            ComputePipeline::new(&interface, FUNCTIONS, &Specialization::of(settings, true, true))?;
         Ok(Self { pipeline, interface, backend, settings: settings.clone() })
     }
 

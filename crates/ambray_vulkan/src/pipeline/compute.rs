@@ -32,17 +32,12 @@ pub(crate) struct ComputePipeline {
 }
 
 impl ComputePipeline {
-    pub(crate) fn new(
-        interface: &Interface,
-        spirv: &[u8],
-        specialization: &Specialization,
-    ) -> Result<Self> {
+    pub(crate) fn new(interface: &Interface, spirv: &[u8], specialization: &Specialization) -> Result<Self> {
         let context = &interface.context;
         let module = Module::new(context, spirv)?;
         let entries = map_entries();
-        let special = vk::SpecializationInfo::default()
-            .map_entries(&entries)
-            .data(bytemuck::bytes_of(specialization));
+        let special =
+            vk::SpecializationInfo::default().map_entries(&entries).data(bytemuck::bytes_of(specialization));
         let stage = vk::PipelineShaderStageCreateInfo::default()
             .stage(vk::ShaderStageFlags::COMPUTE)
             .module(module.handle)
@@ -50,9 +45,8 @@ impl ComputePipeline {
             .specialization_info(&special);
         let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(interface.layout);
         // SAFETY: module and layout are of this device, and everything described lives until the call returns.
-        let made = unsafe {
-            context.device.create_compute_pipelines(vk::PipelineCache::null(), &[info], None)
-        };
+        let made =
+            unsafe { context.device.create_compute_pipelines(vk::PipelineCache::null(), &[info], None) };
         let handle = made.map_err(|(_, result)| VulkanError::of("vkCreateComputePipelines")(result))?[0];
         Ok(Self { context: Arc::clone(context), handle })
     }

@@ -61,9 +61,8 @@ impl Interface {
             self.set = device
                 .allocate_descriptor_sets(&info)
                 .map_err(VulkanError::of("vkAllocateDescriptorSets"))?[0];
-            let info = vk::PipelineLayoutCreateInfo::default()
-                .set_layouts(&layouts)
-                .push_constant_ranges(&ranges);
+            let info =
+                vk::PipelineLayoutCreateInfo::default().set_layouts(&layouts).push_constant_ranges(&ranges);
             self.layout = device
                 .create_pipeline_layout(&info, None)
                 .map_err(VulkanError::of("vkCreatePipelineLayout"))?;
@@ -74,8 +73,8 @@ impl Interface {
     /// Makes the shaders trace `tlas`. No submission that uses the set may be under way.
     pub(crate) fn bind(&self, tlas: vk::AccelerationStructureKHR) {
         let structures = [tlas];
-        let mut write = vk::WriteDescriptorSetAccelerationStructureKHR::default()
-            .acceleration_structures(&structures);
+        let mut write =
+            vk::WriteDescriptorSetAccelerationStructureKHR::default().acceleration_structures(&structures);
         let write = vk::WriteDescriptorSet::default()
             .dst_set(self.set)
             .descriptor_type(vk::DescriptorType::ACCELERATION_STRUCTURE_KHR)

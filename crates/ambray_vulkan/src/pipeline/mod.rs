@@ -13,8 +13,8 @@ use crate::{
     layout::{self, Push, Specialization},
 };
 
-pub(crate) use compute::ComputePipeline;
 pub(crate) use cache::ProgramCache;
+pub(crate) use compute::ComputePipeline;
 pub(crate) use interface::Interface;
 
 use ray_tracing::RayTracingPipeline;
@@ -91,7 +91,9 @@ impl Programs {
         let tracing = if mode == TraceMode::Pipeline {
             Tracing::Pipeline(Box::new(RayTracingPipeline::new(interface, specialization)?))
         } else {
-            Tracing::Query(TracePass::ALL.into_iter().map(|p| compute(compute::query(p))).collect::<Result<_>>()?)
+            Tracing::Query(
+                TracePass::ALL.into_iter().map(|p| compute(compute::query(p))).collect::<Result<_>>()?,
+            )
         };
         Ok(Self { _interface: Arc::clone(interface), tracing, filter: compute(crate::shaders::FILTER)? })
     }

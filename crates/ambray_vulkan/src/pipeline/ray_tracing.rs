@@ -109,9 +109,8 @@ impl RayTracingPipeline {
         let modules =
             STAGES.iter().map(|(_, spirv)| Module::new(context, spirv)).collect::<Result<Vec<_>>>()?;
         let entries = map_entries();
-        let special = vk::SpecializationInfo::default()
-            .map_entries(&entries)
-            .data(bytemuck::bytes_of(specialization));
+        let special =
+            vk::SpecializationInfo::default().map_entries(&entries).data(bytemuck::bytes_of(specialization));
         let stages: Vec<_> = (STAGES.iter().zip(&modules))
             .map(|(&(stage, _), module)| {
                 vk::PipelineShaderStageCreateInfo::default()

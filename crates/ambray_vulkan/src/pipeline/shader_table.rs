@@ -44,7 +44,8 @@ impl ShaderTable {
     pub(super) fn new(context: &Arc<Context>, handles: &[u8], counts: [u32; 4]) -> Result<Self> {
         let limits = context.limits();
         let [handle_size, handle_alignment, base] =
-            [limits.group_handle_size, limits.group_handle_alignment, limits.group_base_alignment].map(u64::from);
+            [limits.group_handle_size, limits.group_handle_alignment, limits.group_base_alignment]
+                .map(u64::from);
         let places = Places::new(counts, handle_size, handle_alignment, base);
         let usage =
             vk::BufferUsageFlags::SHADER_BINDING_TABLE_KHR | vk::BufferUsageFlags::SHADER_DEVICE_ADDRESS;
