@@ -60,11 +60,16 @@ pub fn assert_equal(name: &str, expected: &Frame, actual: &Frame) {
         ("after the filter", &expected.ambient, &actual.ambient),
     ];
     for (when, expected_plane, actual_plane) in planes {
-        let unequal = expected_plane.iter().zip(actual_plane.iter()).filter(|(a, b)| !is_equal(**a, **b)).count();
+        let unequal =
+            expected_plane.iter().zip(actual_plane.iter()).filter(|(a, b)| !is_equal(**a, **b)).count();
         let share = 1.0 - unequal as f64 / expected_plane.len() as f64;
         if share < SHARE {
             let path = write_triptych(name, expected.width as usize, expected_plane, actual_plane);
-            panic!("{name} {when}: {unequal} of {} pixels differ, see {}", expected_plane.len(), path.display());
+            panic!(
+                "{name} {when}: {unequal} of {} pixels differ, see {}",
+                expected_plane.len(),
+                path.display()
+            );
         }
     }
 }

@@ -52,11 +52,8 @@ fn materials() -> Vec<Material> {
     let mut materials = vec![Material::default(); 9];
     materials[Paint::Floor as usize] =
         Material { checker: checker(Vec3::new(0.7, 0.2, 0.1), 0.5), ..color(0.8, 0.8, 0.7) };
-    materials[Paint::Leaves as usize] = Material {
-        base_color_texture: read(0, 0),
-        alpha_mode: AlphaMode::Mask(0.5),
-        ..color(0.9, 0.9, 0.9)
-    };
+    materials[Paint::Leaves as usize] =
+        Material { base_color_texture: read(0, 0), alpha_mode: AlphaMode::Mask(0.5), ..color(0.9, 0.9, 0.9) };
     materials[Paint::Glass as usize] = Material {
         base_color: Vec4::new(0.2, 0.5, 0.9, 0.4),
         alpha_mode: AlphaMode::Blend,
@@ -200,7 +197,12 @@ fn add_shapes(scene: &mut Scene) {
     let mut place = |shape: u32, material: Paint, turned: Quat, scale: Vec3, at: Vec3| {
         let world_from_object = Affine3A::from_scale_rotation_translation(scale, turned, at);
         let material = material as u32;
-        scene.shape_instances.push(ShapeInstance { shape, material, world_from_object, ..ShapeInstance::default() });
+        scene.shape_instances.push(ShapeInstance {
+            shape,
+            material,
+            world_from_object,
+            ..ShapeInstance::default()
+        });
     };
     let upright = Quat::IDENTITY;
     place(0, Paint::Clay, upright, Vec3::ONE, Vec3::new(0.0, 0.4, 0.0));

@@ -7,8 +7,8 @@ use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
 
 use ambray::{Control, Frame, Renderer, vulkan::TraceMode};
 use ambray_core::settings::{
-    Auto, Falloff, FilterTest, NearRadiance, Normals, RadianceSource, Rgb, Sampling, Sequence, Settings, Size,
-    Thin, ThinMinimum, Triple, Window,
+    Auto, Falloff, FilterTest, NearRadiance, Normals, RadianceSource, Rgb, Sampling, Sequence, Settings,
+    Size, Thin, ThinMinimum, Triple, Window,
 };
 use ambray_scene::{Scene, atrium};
 use conformance::{parity, scenes, shared, views};
@@ -85,7 +85,9 @@ fn others(base: &Settings) -> Vec<Settings> {
     all.extend(RadianceSource::ALL.iter().map(|&source| {
         with(&|s| (s.radiance_source, s.ambient) = (source, Auto::Value(Rgb([0.9, 0.7, 0.5]))))
     }));
-    all.extend(Sampling::ALL.iter().map(|&sampling| with(&|s| (s.sampling, s.thin) = (sampling, Thin::Sheet))));
+    all.extend(
+        Sampling::ALL.iter().map(|&sampling| with(&|s| (s.sampling, s.thin) = (sampling, Thin::Sheet))),
+    );
     all.extend(Sequence::ALL.iter().map(|&sequence| {
         with(&|s| (s.sequence, s.spp, s.sampling, s.frame) = (sequence, 5, Sampling::Random, 3))
     }));
@@ -122,7 +124,7 @@ fn a_zoo_of_shapes_and_materials() {
 
 #[test]
 fn sponza() {
-    let Some(scene) = shared::load("Sponza/glTF/Sponza.gltf") else { return };
+    let Some(scene) = shared::load("Sponza/Sponza.gltf") else { return };
     for view in views::SPONZA {
         let size = Size { width: 160, height: 90 };
         let base = Settings { size, normals: Normals::Shading, ..view.settings() };
@@ -164,7 +166,9 @@ fn only_file_of(folder: &std::path::Path) -> std::path::PathBuf {
     let mut files = Vec::new();
     let mut folders = vec![folder.to_owned()];
     while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display())) {
+        for entry in
+            std::fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()))
+        {
             let path = entry.unwrap_or_else(|error| panic!("{error}")).path();
             if path.is_dir() {
                 folders.push(path);

@@ -15,8 +15,13 @@ vec2 transformed(TextureUse use, vec2 uv) {
     return use.transform[0] * uv.x + use.transform[1] * uv.y + use.transform[2];
 }
 
+// Without fused products: where the products cancel, as for texture coordinates on a line, the mip level depends on the
+// rounding.
 float perp_dot(vec2 a, vec2 b) {
-    return a.x * b.y - a.y * b.x;
+    precise float left = a.x * b.y;
+    precise float right = a.y * b.x;
+    precise float difference = left - right;
+    return difference;
 }
 
 vec4 read_texture(Place place, TextureUse use) {

@@ -7,6 +7,7 @@ use glam::{Affine3A, Vec3};
 
 use super::GeometryKind;
 use super::bounds::Bounds;
+use super::duplicates;
 use super::geometry::{self, Placed};
 use super::plan::{Content, Group};
 use super::sort::spatial_order;
@@ -28,7 +29,7 @@ pub(super) struct Input {
     pub(super) refs: Vec<[u32; 2]>,
     /// In the space of the structure.
     pub(super) bounds: Bounds,
-    /// Triangles that rays cannot hit.
+    /// Triangles that rays cannot hit, or that never count.
     pub(super) dropped: u64,
 }
 
@@ -49,11 +50,14 @@ impl Input {
         let is_world = matches!(group.content, Content::World(_));
         match group.kind {
             GeometryKind::Shape => Self::boxes(scene, members, is_world),
-            GeometryKind::Opaque | GeometryKind::Masked => Self::triangles(scene, members, is_world),
+            GeometryKind::Opaque => Self::triangles(scene, members, is_world, true),
+            // Which of two in one place a ray sees depends on their alphas.
+            GeometryKind::Masked => Self::triangles(scene, members, is_world, false),
         }
     }
 
-    fn triangles(scene: &Scene, members: &[u32], is_world: bool) -> Self {
+    /// Triangles of `members`, of which those that equal others may be left out.
+    fn triangles(scene: &Scene, members: &[u32], is_world: bool, distinct: bool) -> Self {
         let (mut positions, mut triangles, mut refs) = (Vec::new(), Vec::new(), Vec::new());
         let (mut centres, mut bounds, mut dropped) = (Vec::new(), Bounds::EMPTY, 0);
         for &member in members {
@@ -74,7 +78,12 @@ impl Input {
             dropped += (mesh.triangles.len() - (triangles.len() - before)) as u64;
             positions.extend(placed.positions);
         }
-        let order = spatial_order(&centres);
+        let mut order = spatial_order(&centres);
+        if distinct {
+            let counts = duplicates::counting(&positions, &triangles, &refs);
+            order.retain(|&i| counts[i as usize]);
+            dropped += (triangles.len() - order.len()) as u64;
+        }
         let triangles = order.iter().map(|&i| triangles[i as usize]).collect();
         let refs = order.iter().map(|&i| refs[i as usize]).collect();
         Self { primitives: Primitives::Triangles { positions, triangles }, refs, bounds, dropped }

@@ -7,6 +7,7 @@
 mod blas;
 mod bounds;
 mod cull;
+mod duplicates;
 mod geometry;
 mod grouping;
 mod input;

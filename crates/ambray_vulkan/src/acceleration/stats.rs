@@ -17,7 +17,7 @@ pub struct AccelerationStats {
     pub triangles: u64,
     /// Number of boxes of shapes.
     pub boxes: u64,
-    /// Number of triangles that no ray can hit.
+    /// Number of triangles that no ray can hit, or that lie in the place of others.
     pub dropped: u64,
     /// Bottom-level structures as they were built.
     pub bytes_before: u64,
