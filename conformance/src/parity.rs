@@ -6,7 +6,7 @@ use ambray::{
     BackendChoice, Control, Frame, Renderer, RendererOptions,
     scene::Scene,
     settings::Settings,
-    vulkan::{DeviceOptions, TraceMode, VulkanError},
+    vulkan::{DeviceKind, DeviceOptions, TraceMode, VulkanError},
 };
 use glam::{Vec3, Vec4, Vec4Swizzles};
 use image::{Rgb, RgbImage};
@@ -30,7 +30,12 @@ pub fn vulkan(scene: Scene, trace: TraceMode) -> Option<Renderer> {
         ..RendererOptions::default()
     };
     match Renderer::open(scene, &options, Control::default()) {
-        Ok(renderer) => Some(renderer),
+        Ok(renderer) => {
+            let is_software = renderer.device().is_some_and(|device| device.kind == DeviceKind::Software);
+            let hardware = std::env::var_os("AMBRAY_VULKAN").is_some_and(|value| value == "hardware");
+            assert!(!(hardware && is_software), "AMBRAY_VULKAN=hardware, but the device is the processor");
+            Some(renderer)
+        }
         Err(error) => {
             let absent = matches!(
                 error,

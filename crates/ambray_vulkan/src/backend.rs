@@ -9,21 +9,30 @@ use ambray_core::{
     control::Control,
     frame::{Frame, FrameStats, StageTimes},
     query::{QueryPoint, QueryResult},
-    settings::{NearRadiance, RadianceSource, Settings, Thin},
+    settings::{NearRadiance, RadianceSource, Sampling, Settings, Thin},
     trace::{Hit, Ray},
     view::View,
 };
 use ambray_scene::{Scene, surface::Surfaces};
 
 use crate::{
-    Acceleration, AccelerationOptions, AccelerationStats, Context, Culling, Result, TraceMode,
+    Acceleration, AccelerationOptions, AccelerationStats, Context, Culling, DeviceKind, Result, TraceMode,
+    VulkanError,
     layout::{Push, Specialization},
     pipeline::{ProgramCache, TracePass},
     points, rays, readback,
-    schedule::{Pass, Step, StepWork, submissions},
+    schedule::{Pass, Step, StepWork, cost_of, submissions},
     state::{Inputs, State},
     tables::Tables,
 };
+
+/// Time that a submission should take: far below the two seconds after which some systems take a device for hung, and long
+/// against the wait between two.
+const SUBMISSION_ON_HARDWARE: Duration = Duration::from_millis(100);
+/// The same where the device is the processor, which nobody watches: progress should still be seen.
+const SUBMISSION_IN_SOFTWARE: Duration = Duration::from_secs(1);
+/// Most rays a pixel for which pairs are searched.
+const MOST_SEARCHED: u64 = 4096;
 
 /// How a scene is put on a device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -237,12 +246,14 @@ impl VulkanBackend {
         control: Control<'_>,
     ) -> Result<StageTimes> {
         control.check()?;
+        check_search(settings)?;
         let [_, masked, shapes] = self.acceleration.stats().by_kind.map(|count| count > 0);
         let programs = state.programs(&Specialization::of(settings, masked, shapes))?;
         let submissions = submissions(passes, size, state.budget);
         let mut times = StageTimes::default();
         for (index, steps) in submissions.iter().enumerate() {
-            let State { commands, top, view_buffer, interface, .. } = &mut *state;
+            let State { commands, top, view_buffer, interface, budget, adapts, .. } = &mut *state;
+            let start = Instant::now();
             commands.submit(|recorder| {
                 if index == 0 {
                     top.build(recorder, &self.acceleration, culling);
@@ -269,13 +280,19 @@ impl VulkanBackend {
                 if let Some(last) = last {
                     recorder.timestamp(label(last));
                 }
-                // Later submissions and copies see what was written.
+                // Later submissions and copies see what was written, and the host the hits of batches.
                 recorder.barrier(work, crate::Work::Everything);
                 recorder.barrier(crate::Work::Compute, crate::Work::Everything);
+                recorder.barrier(work, crate::Work::HostRead);
                 Ok(())
             })?;
             for timing in commands.wait()? {
                 *stage(&mut times, timing.label) += timing.duration.unwrap_or_default();
+            }
+            if *adapts {
+                let target =
+                    if is_software(&self.context) { SUBMISSION_IN_SOFTWARE } else { SUBMISSION_ON_HARDWARE };
+                budget.learn(cost_of(steps, passes), start.elapsed(), target);
             }
             (control.progress)((index + 1) as f32 / submissions.len() as f32);
             control.check()?;
@@ -300,7 +317,27 @@ fn ambient_cost(settings: &Settings, view: &View) -> u64 {
     let is_lit =
         settings.near_radiance != NearRadiance::Off && settings.radiance_source == RadianceSource::Lit;
     let shadows = if is_lit { view.lights.len() as u64 } else { 0 };
-    (spp + chords) * (1 + shadows)
+    let searched = if searches(settings) { spp * spp / 8 } else { 0 };
+    (spp + chords) * (1 + shadows) + searched
+}
+
+/// Whether the pairs of the sheet mode are found by a search: there is no table of azimuths for sets of their own.
+fn searches(settings: &Settings) -> bool {
+    settings.thin == Thin::Sheet && matches!(settings.sampling, Sampling::Random | Sampling::Independent)
+}
+
+/// The search takes the square of N: one pixel must not keep a device for seconds.
+fn check_search(settings: &Settings) -> Result<()> {
+    let (asked, limit) = (u64::from(settings.spp), MOST_SEARCHED);
+    if searches(settings) && asked > limit {
+        let what = "rays a pixel with thin sheet and a sample set for each pixel".to_owned();
+        return Err(VulkanError::Limit { what, asked, limit });
+    }
+    Ok(())
+}
+
+fn is_software(context: &Context) -> bool {
+    context.report().kind == DeviceKind::Software
 }
 
 const fn label(work: StepWork) -> &'static str {

@@ -12,6 +12,9 @@ use crate::Context;
 use crate::commands::Work;
 use crate::error::{MemorySide, Result, VulkanError};
 
+/// Alignment that shaders rely on, bytes: that of a vector of four numbers.
+const VECTOR: u64 = 16;
+
 /// Largest staging buffer of an upload, bytes.
 const STAGING: u64 = 64 << 20;
 
@@ -201,7 +204,9 @@ fn allocate(
     location: Location,
 ) -> Result<Allocation> {
     // SAFETY: the buffer is of this device and alive.
-    let requirements = unsafe { context.device.get_buffer_memory_requirements(buffer) };
+    let mut requirements = unsafe { context.device.get_buffer_memory_requirements(buffer) };
+    // Shaders read vectors of four from the start of buffers.
+    requirements.alignment = requirements.alignment.max(VECTOR);
     let mut allocator = context.allocator();
     let description = AllocationCreateDesc {
         name,

@@ -1,6 +1,8 @@
 //! How a frame is cut into submissions: none may run so long that the system takes the device for hung, or that a caller
 //! waits long for progress or to cancel.
 
+use std::time::Duration;
+
 use crate::{
     Limits,
     layout::{QUERY_HEIGHT, QUERY_WIDTH},
@@ -38,16 +40,39 @@ pub(crate) struct Budget {
 }
 
 impl Budget {
-    /// For a device: some tens of milliseconds of tracing on hardware, a second or two in software.
+    /// For a device about whose speed nothing is known yet.
     pub(crate) fn of(limits: &Limits, is_software: bool) -> Self {
         let groups = limits.workgroup_count[0].min(limits.workgroup_count[1]);
         Self {
-            cost: if is_software { 1 << 20 } else { 1 << 26 },
-            pixels: u64::from(limits.ray_invocations.max(1)),
+            cost: if is_software { 1 << 20 } else { 1 << 22 },
+            // Devices that trace by queries alone have no such limit.
+            pixels: match limits.ray_invocations {
+                0 => u64::MAX,
+                most => u64::from(most),
+            },
             // Both passes of workgroups and of rays must fit along each axis.
             side: groups.saturating_mul(QUERY_WIDTH.min(QUERY_HEIGHT)).max(1),
         }
     }
+}
+
+impl Budget {
+    /// Learns from a submission of `cost` that took `elapsed`, so that the next ones take about `target`.
+    pub(crate) fn learn(&mut self, cost: u64, elapsed: Duration, target: Duration) {
+        // Small ones tell more about waiting than about work.
+        if cost < self.cost / 4 {
+            return;
+        }
+        let rate = cost as f64 / elapsed.as_secs_f64().max(1e-4);
+        self.cost = ((rate * target.as_secs_f64()) as u64).clamp(1 << 18, 1 << 30);
+    }
+}
+
+/// Cost of the steps of a submission.
+pub(crate) fn cost_of(steps: &[Step], passes: &[Pass]) -> u64 {
+    let of = |work: StepWork| passes.iter().find(|pass| pass.work == work).map_or(1, |pass| pass.cost);
+    let pixels = |step: &Step| u64::from(step.extent[0]) * u64::from(step.extent[1]);
+    steps.iter().map(|step| pixels(step).saturating_mul(of(step.work))).fold(0, u64::saturating_add)
 }
 
 /// The submissions of a frame of `size` pixels, each a list of steps in order.
@@ -121,6 +146,20 @@ mod tests {
             sorted.sort_by_key(|work| PASSES.iter().position(|pass| pass.work == *work));
             assert_eq!(order, sorted);
         }
+    }
+
+    #[test]
+    fn budgets_follow_the_speed_of_the_device() {
+        let mut budget = Budget { cost: 1 << 22, pixels: u64::MAX, side: 65535 };
+        let target = Duration::from_millis(100);
+        budget.learn(1 << 22, Duration::from_millis(10), target);
+        assert!((budget.cost as f64 / f64::from(10 << 22) - 1.0).abs() < 1e-6);
+        budget.learn(1, Duration::from_secs(1), target);
+        assert!(budget.cost > 1 << 24, "a small submission changes nothing");
+        let all = budget.cost;
+        budget.learn(all, Duration::from_secs(2), target);
+        assert!(budget.cost < all / 19);
+        assert_eq!(cost_of(&submissions(&PASSES, [10, 10], budget).concat(), &PASSES), 4200);
     }
 
     #[test]

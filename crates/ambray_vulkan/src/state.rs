@@ -41,6 +41,8 @@ pub(crate) struct State {
     pub(crate) top: TopLevel,
     pub(crate) view_buffer: Buffer,
     pub(crate) budget: Budget,
+    /// Whether the budget follows the speed of the device.
+    pub(crate) adapts: bool,
     planes: Option<Planes>,
     samples: Option<(SampleKey, Buffer, Buffer)>,
     lights: Option<(Vec<layout::Light>, Buffer)>,
@@ -68,6 +70,7 @@ impl State {
             commands: CommandSet::new(context)?,
             top,
             view_buffer,
+            adapts: true,
             budget: Budget::of(context.limits(), context.report().kind == DeviceKind::Software),
             planes: None,
             samples: None,

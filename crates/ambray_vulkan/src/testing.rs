@@ -73,7 +73,8 @@ impl<'a> Functions<'a> {
 impl VulkanBackend {
     /// Cuts frames into submissions of at most `rays` rays, and of one row at least.
     pub fn limit_submissions(&self, rays: u64) {
-        self.state().budget.cost = rays;
+        let mut state = self.state();
+        (state.budget.cost, state.adapts) = (rays, false);
     }
 
     /// Takes the same points of the unit square for every pixel, as long as the sampling of `settings` stays.

@@ -4,28 +4,28 @@
 
 #include "layout.glsl"
 
-#define TABLE(Name, Element) layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Name { Element at[]; }
-TABLE(Placements, Placement);
-TABLE(Instances, Instance);
-TABLE(Meshes, Mesh);
-TABLE(Materials, Material);
-TABLE(Textures, Texture);
-TABLE(Levels, ImageLevel);
-TABLE(Lights, Light);
-TABLE(ShapeInstances, ShapeInstance);
-TABLE(FloatArray, float);
-TABLE(Uints, uint);
-TABLE(Uvec2s, uvec2);
-TABLE(Uvec3s, uvec3);
-TABLE(Vec2s, vec2);
-TABLE(Vec3s, vec3);
-TABLE(Vec4s, vec4);
+#define TABLE(Name, Element, Align) layout(buffer_reference, scalar, buffer_reference_align = Align) readonly buffer Name { Element at[]; }
+TABLE(Placements, Placement, 4);
+TABLE(Instances, Instance, 4);
+TABLE(Meshes, Mesh, 4);
+TABLE(Materials, Material, 4);
+TABLE(Textures, Texture, 4);
+TABLE(Levels, ImageLevel, 4);
+TABLE(Lights, Light, 4);
+TABLE(ShapeInstances, ShapeInstance, 4);
+TABLE(FloatArray, float, 4);
+TABLE(Uints, uint, 4);
+TABLE(Uvec2s, uvec2, 8);
+TABLE(Uvec3s, uvec3, 4);
+TABLE(Vec2s, vec2, 8);
+TABLE(Vec3s, vec3, 4);
+TABLE(Vec4s, vec4, 16);
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Shapes { Shape at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer SceneReference { SceneTables data; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer ViewReference { View data; };
 
 // Planes are written, too.
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Plane { vec4 at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) buffer Plane { vec4 at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Tallies { Tally at[]; };
 
 layout(push_constant, scalar) uniform PushBlock { Push push; };

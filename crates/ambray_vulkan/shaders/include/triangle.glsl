@@ -21,7 +21,11 @@ vec2 refined_barycentrics(vec3 origin, vec3 direction, vec3 points[3], vec2 othe
     precise float v = corners[0].x * corners[2].y - corners[0].y * corners[2].x;
     precise float w = corners[1].x * corners[0].y - corners[1].y * corners[0].x;
     precise float determinant = u + v + w;
-    return determinant == 0.0 ? otherwise : vec2(v, w) / determinant;
+    vec2 refined = vec2(v, w) / determinant;
+    // Beyond the triangle the device has found it by a ray that is not quite this one.
+    vec3 weights = vec3(1.0 - refined.x - refined.y, refined);
+    bool inside = all(greaterThan(weights, vec3(-0.01))) && all(lessThan(weights, vec3(1.01)));
+    return inside ? refined : otherwise;
 }
 
 #endif

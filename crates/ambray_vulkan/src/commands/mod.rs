@@ -124,12 +124,14 @@ impl CommandSet {
     }
 
     fn finish(&mut self) -> Result<()> {
-        if std::mem::take(&mut self.is_pending) {
-            // SAFETY: the fence is ours, and was given to a submission.
-            unsafe { self.raw.context.device.wait_for_fences(&[self.raw.fence], true, u64::MAX) }
-                .map_err(VulkanError::of("vkWaitForFences"))?;
+        if !self.is_pending {
+            return Ok(());
         }
-        Ok(())
+        // SAFETY: the fence is ours, and was given to a submission.
+        let waited = unsafe { self.raw.context.device.wait_for_fences(&[self.raw.fence], true, u64::MAX) };
+        // Anything but success and a lost device leaves the commands running: they stay pending.
+        self.is_pending = !matches!(waited, Ok(()) | Err(vk::Result::ERROR_DEVICE_LOST));
+        waited.map_err(VulkanError::of("vkWaitForFences"))
     }
 }
 

@@ -8,7 +8,9 @@ use ambray_vulkan::{Context, DeviceOptions, VulkanError};
 /// A context with the validation layer watching, on whatever device there is, the processor included. `None`, with a line
 /// that says so, where there is no Vulkan; a failure there if `AMBRAY_REQUIRE_VULKAN=1`.
 pub fn context() -> Option<Arc<Context>> {
-    let options = DeviceOptions { device: None, software: true, validation: true };
+    // A real device may be asked for.
+    let software = std::env::var_os("AMBRAY_VULKAN").is_none_or(|value| value != "hardware");
+    let options = DeviceOptions { device: None, software, validation: true };
     match Context::new(&options) {
         Ok(context) => Some(context),
         Err(error) => {
