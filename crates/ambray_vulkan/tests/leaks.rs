@@ -88,7 +88,7 @@ fn exercise(context: &Arc<Context>, rounds: &Rounds) {
     let programs: Vec<_> = programs.collect();
     programs.iter().for_each(|settings| render(&first, settings, 9, 9));
     rounds.run("changes of settings", 200, |i| render(&first, &programs[i as usize % programs.len()], 8, 8));
-    rounds.run("scenes", 300, |i| {
+    rounds.run("scenes", 1000, |i| {
         let scene = Arc::new(room(i % 5));
         let backend = first.with_scene(&scene, &Control::default()).unwrap_or_else(|error| panic!("{error}"));
         if i % 3 == 0 {
