@@ -4,7 +4,7 @@ mod common;
 
 use ambray_core::light::{Cone, Light};
 use ambray_scene::{AlphaMode, LoadOptions, Loaded, SceneChoice, load_with};
-use common::load_files;
+use common::{assert_refused, load_files, load_text};
 use glam::{Vec2, Vec3, Vec4};
 
 /// One triangle as non-indexed float positions, base64.
@@ -24,13 +24,12 @@ fn gltf(rest: &str) -> String {
 
 #[track_caller]
 fn load(rest: &str) -> Loaded {
-    load_files(&[("x.gltf", gltf(rest).as_bytes())]).unwrap_or_else(|error| panic!("{error}"))
+    load_text(&gltf(rest))
 }
 
 #[track_caller]
 fn check_refused(rest: &str, expected: &str) {
-    let text = load_files(&[("x.gltf", gltf(rest).as_bytes())]).expect_err("must be refused").to_string();
-    assert!(text.ends_with(expected), "{text}");
+    assert_refused(&gltf(rest), expected);
 }
 
 #[test]

@@ -14,7 +14,7 @@ use ambray_scene::{
     Checker, Loaded, Material, MaterialKind, Mesh, Motion, Scene, ShapeInstance, surface::Surfaces,
 };
 use base64::Engine as _;
-use common::load_files;
+use common::{assert_refused, load_files, load_text};
 use glam::{Affine3A, DVec3, Quat, Vec3, Vec4};
 
 /// A file with the numbers −1.5, −0.5, … in accessors 0 (16 of them), 1 (8) and 2 (4 × 3), and `rest` in its root object.
@@ -34,14 +34,12 @@ fn gltf(rest: &str) -> String {
 
 #[track_caller]
 fn load(rest: &str) -> Loaded {
-    load_files(&[("x.gltf", gltf(rest).as_bytes())]).unwrap_or_else(|error| panic!("{error}"))
+    load_text(&gltf(rest))
 }
 
 #[track_caller]
 fn check_refused(rest: &str, expected: &str) {
-    let text = load_files(&[("x.gltf", gltf(rest).as_bytes())]).expect_err("must be refused").to_string();
-    assert!(text.ends_with(expected), "{text}");
-    assert_eq!(text.lines().count(), 1);
+    assert_refused(&gltf(rest), expected);
 }
 
 /// A file that shows `shape`.

@@ -51,3 +51,17 @@ pub(crate) fn load_files(files: &[(&str, &[u8])]) -> Result<Loaded, LoadError> {
     }
     ambray_scene::load(&dir.path().join(files[0].0))
 }
+
+/// Loads glTF text.
+#[track_caller]
+pub(crate) fn load_text(gltf: &str) -> Loaded {
+    load_files(&[("x.gltf", gltf.as_bytes())]).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Fails unless glTF text is refused with one line that ends with `expected`.
+#[track_caller]
+pub(crate) fn assert_refused(gltf: &str, expected: &str) {
+    let text = load_files(&[("x.gltf", gltf.as_bytes())]).expect_err("must be refused").to_string();
+    assert!(text.ends_with(expected), "{text}");
+    assert_eq!(text.lines().count(), 1);
+}

@@ -10,7 +10,7 @@ void write_nothing(uint index) {
     Plane(VIEW.geometric).at[index] = vec4(0.0);
     Plane(VIEW.shading).at[index] = vec4(vec3(0.0), uintBitsToFloat(NONE));
     Plane(VIEW.smooth_normals).at[index] = vec4(vec3(0.0), uintBitsToFloat(NONE));
-    Plane(VIEW.albedo).at[index] = vec4(vec3(0.0), uintBitsToFloat(1u));
+    Plane(VIEW.albedo).at[index] = vec4(0.0);
     Plane(VIEW.emission).at[index].rgb = VIEW.background;
 }
 
@@ -37,7 +37,7 @@ void write_surface(uint index, Ray ray, Hit hit) {
     Plane(VIEW.geometric).at[index] = vec4(geometric_normal, at.reach);
     Plane(VIEW.shading).at[index] = vec4(bent_normal, uintBitsToFloat(at.material));
     Plane(VIEW.smooth_normals).at[index] = vec4(smooth_normal, uintBitsToFloat(hit.instance));
-    Plane(VIEW.albedo).at[index] = vec4(shade.albedo, uintBitsToFloat(1u));
+    Plane(VIEW.albedo).at[index] = vec4(shade.albedo, 0.0);
     Plane(VIEW.emission).at[index].rgb = shade.emission;
 }
 

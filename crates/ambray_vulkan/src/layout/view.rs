@@ -53,7 +53,7 @@ structures! {
         shading: u64,
         /// `vec4`: normal without normal map, instance (bits).
         smooth_normals: u64,
-        /// `vec4`: albedo, rays traced (bits).
+        /// `vec4`: albedo.
         albedo: u64,
         /// `vec4`: emission, sample class (bits).
         emission: u64,
@@ -63,7 +63,7 @@ structures! {
         ambient: u64,
         /// `vec4`: openness and near radiance of the second batch.
         second: u64,
-        /// `vec4`: bent normal before the filter.
+        /// `vec4`: bent normal before the filter, openness of the first batch.
         bent: u64,
         /// [`Tally`].
         tallies: u64,
