@@ -9,15 +9,15 @@ use crate::parity;
 ///
 /// # Panics
 /// As `test` does, and see [`parity::vulkan`].
-pub fn each(scene: Scene, test: impl Fn(&Renderer)) {
+pub fn each(scene: Scene, test: impl Fn(&mut Renderer)) {
     for mode in [TraceMode::Pipeline, TraceMode::Query] {
-        if let Some(renderer) = parity::vulkan(scene.clone(), mode) {
+        if let Some(mut renderer) = parity::vulkan(scene.clone(), mode) {
             println!("by {mode:?}:");
-            test(&renderer);
+            test(&mut renderer);
             let messages = renderer.validation_messages();
             assert!(messages.is_empty(), "{}", messages.join("\n"));
         }
     }
     println!("on the processor:");
-    test(&Renderer::new(scene));
+    test(&mut Renderer::new(scene));
 }

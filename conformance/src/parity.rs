@@ -115,6 +115,6 @@ fn write_triptych(name: &str, width: usize, expected: &[Vec4], actual: &[Vec4]) 
 /// # Panics
 /// If it fails.
 #[must_use]
-pub fn render(renderer: &Renderer, settings: &Settings) -> Frame {
+pub fn render(renderer: &mut Renderer, settings: &Settings) -> Frame {
     renderer.render(settings, Control::default()).unwrap_or_else(|error| panic!("{error}"))
 }

@@ -1,6 +1,7 @@
 //! A scene that tests make themselves: a little of everything that shading and tracing know.
 
 use std::f32::consts::PI;
+use std::sync::Arc;
 
 use ambray::light::{Cone, Light};
 use ambray_core::shape::{Shape, SignedDistanceField};
@@ -36,7 +37,7 @@ pub fn zoo() -> Scene {
             texture(1, Filter::Linear, Wrap::Mirror),
             texture(2, Filter::Nearest, Wrap::Clamp),
         ],
-        images: vec![leaves(), bumps(), letters()],
+        images: [leaves(), bumps(), letters()].map(Arc::new).into(),
         lights: lights(),
         ..Scene::default()
     };
@@ -146,7 +147,9 @@ fn place(scene: &mut Scene, mesh: u32, turned: Quat, scale: Vec3, at: Vec3) {
 
 fn add_cards(scene: &mut Scene) {
     let papers = [Paint::Floor, Paint::Leaves, Paint::Glass, Paint::Bricks, Paint::Sign];
-    scene.meshes.extend(papers.map(|paint| card(paint, matches!(paint, Paint::Bricks | Paint::Leaves))));
+    scene
+        .meshes
+        .extend(papers.map(|paint| card(paint, matches!(paint, Paint::Bricks | Paint::Leaves)).into()));
     let flat = Quat::from_rotation_x(-0.5 * PI);
     place(scene, 0, flat, Vec3::splat(6.0), Vec3::ZERO);
     for i in 0..5 {
@@ -177,7 +180,7 @@ fn add_blocks(scene: &mut Scene) {
         }
     }
     let mesh = scene.meshes.len() as u32;
-    scene.meshes.push(block);
+    scene.meshes.push(block.into());
     for i in 0..24 {
         let angle = i as f32 * PI / 12.0;
         let scale = if i % 12 == 5 { Vec3::new(0.05, 0.6, 0.1) } else { Vec3::splat(0.12) };

@@ -5,7 +5,7 @@ use ambray_core::settings::{Auto, Falloff, NearRadiance, RadianceSource, Rgb, Se
 use conformance::{backends, shared};
 use glam::Vec3;
 
-fn query(renderer: &Renderer, settings: &Settings, position: Vec3, normal: Vec3) -> QueryResult {
+fn query(renderer: &mut Renderer, settings: &Settings, position: Vec3, normal: Vec3) -> QueryResult {
     let point = QueryPoint { position, normal, class: 0 };
     renderer.query(settings, &[point], Control::default()).unwrap_or_else(|error| panic!("{error}"))[0]
 }

@@ -33,7 +33,7 @@ fn sheets(alpha: f32, layers: &[&[f32]]) -> Scene {
     });
     Scene {
         instances: instances.collect(),
-        meshes,
+        meshes: meshes.into_iter().map(Into::into).collect(),
         materials: vec![Material::default(), sheet],
         ..Scene::default()
     }
@@ -52,8 +52,8 @@ fn transmittance(scene: Scene) -> [f32; 3] {
         vertical_fov: Auto::Value(20.0),
         ..Settings::default()
     };
-    let renderer = Renderer::new(scene);
-    let render = |height: f32| {
+    let mut renderer = Renderer::new(scene);
+    let mut render = |height: f32| {
         renderer.render(&from(height), Control::default()).unwrap_or_else(|error| panic!("{error}"))
     };
     // Above the sheets for primary rays; below them, on the floor, for the others.

@@ -99,7 +99,7 @@ fn every_valid_scene_looks_as_it_did() {
             }
         };
         let settings = Settings { size: Size { width: 64, height: 36 }, spp: 4, ..Settings::default() };
-        let renderer = Renderer::new(scene);
+        let mut renderer = Renderer::new(scene);
         let frame =
             renderer.render(&settings, Control::default()).unwrap_or_else(|error| panic!("{name}: {error}"));
         if !frame.beauty.iter().all(|v| v.is_finite()) {

@@ -1,5 +1,7 @@
 //! What must not change the picture: threads, runs, motion, scale and order; and what must change it in one direction.
 
+use std::sync::Arc;
+
 use ambray::{BuildOptions, Control, Frame, Renderer};
 use ambray_core::settings::{Auto, Settings, Size, Thin, Triple};
 use ambray_scene::{Instance, Material, Mesh, Scene};
@@ -18,7 +20,9 @@ fn scene() -> Scene {
         world_from_object: Affine3A::IDENTITY,
         ..Instance::default()
     });
-    Scene { instances: instances.collect(), meshes, materials: vec![Material::default()], ..Scene::default() }
+    let instances = instances.collect();
+    let meshes = meshes.into_iter().map(Arc::new).collect();
+    Scene { instances, meshes, materials: vec![Material::default()], ..Scene::default() }
 }
 
 fn quad(origin: [f32; 3], u: [f32; 3], v: [f32; 3]) -> Mesh {
@@ -65,6 +69,7 @@ fn threads_and_runs_give_the_same_bits() {
 fn order_of_triangles_does_not_matter() {
     let mut reversed = scene();
     for mesh in &mut reversed.meshes {
+        let mesh = Arc::make_mut(mesh);
         mesh.triangles.reverse();
         mesh.triangles.iter_mut().for_each(|t| t.rotate_left(1));
     }
@@ -156,7 +161,7 @@ fn slanted_floors_do_not_shadow_themselves() {
                 let away = Affine3A::from_translation(rotation * Vec3::Y * -3.0 * half);
                 let placements = [Affine3A::IDENTITY, away];
                 let scene = Scene {
-                    meshes: vec![mesh.clone()],
+                    meshes: vec![Arc::new(mesh.clone())],
                     instances: placements[..copies]
                         .iter()
                         .map(|&world_from_object| Instance {
@@ -175,7 +180,7 @@ fn slanted_floors_do_not_shadow_themselves() {
                     camera_target: Auto::Value((rotation * Vec3::new(0.01, 0.0, 0.02)).into()),
                     ..Settings::default()
                 };
-                let renderer = Renderer::on_cpu(scene, options);
+                let mut renderer = Renderer::on_cpu(scene, options);
                 let frame =
                     renderer.render(&settings, Control::default()).unwrap_or_else(|error| panic!("{error}"));
                 let wrong = frame.ambient_raw.iter().filter(|v| v.x != 1.0).count();

@@ -33,12 +33,12 @@ fn check(name: &str, scene: &Scene, settings: &[Settings]) {
         return;
     }
     let ready = |device: &Renderer| device.with_scene(scene.clone(), Control::default());
-    let devices: Vec<_> =
+    let mut devices: Vec<_> =
         devices.iter().map(|device| ready(device).unwrap_or_else(|error| panic!("{error}"))).collect();
-    let cpu = Renderer::new(scene.clone());
+    let mut cpu = Renderer::new(scene.clone());
     for (i, settings) in settings.iter().enumerate() {
-        let expected = parity::render(&cpu, settings);
-        for (device, mode) in devices.iter().zip(MODES) {
+        let expected = parity::render(&mut cpu, settings);
+        for (device, mode) in devices.iter_mut().zip(MODES) {
             let actual = parity::render(device, settings);
             let name = format!("{name} {i} {mode:?} {:?} {:?}", settings.thin, settings.falloff);
             parity::assert_equal(&name, &expected, &actual);

@@ -15,12 +15,12 @@ fn bars() -> Value {
     serde_json::from_str(text).expect("the golden file is JSON")
 }
 
-fn render(renderer: &Renderer, settings: &Settings) -> Frame {
+fn render(renderer: &mut Renderer, settings: &Settings) -> Frame {
     renderer.render(settings, Control::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The truth: 1024 rays a pixel, an independent scramble in every pixel, no filter.
-fn reference(renderer: &Renderer, view: &View) -> Map {
+fn reference(renderer: &mut Renderer, view: &View) -> Map {
     let settings =
         Settings { spp: 1024, sampling: Sampling::Random, filter: Window::Off, seed: 7, ..view.settings() };
     views::openness(&render(renderer, &settings)).0
@@ -30,18 +30,18 @@ fn reference(renderer: &Renderer, view: &View) -> Map {
 fn sponza_meets_the_bars() {
     let Some(mut scene) = shared::load("Sponza/Sponza.gltf") else { return };
     views::remove_masked(&mut scene);
-    let renderer = Renderer::new(scene);
+    let mut renderer = Renderer::new(scene);
     let bars = bars();
     let mut failures = Vec::new();
     for view in SPONZA {
-        let truth = reference(&renderer, &view);
+        let truth = reference(&mut renderer, &view);
         let settings = view.settings();
-        let frame = render(&renderer, &settings);
+        let frame = render(&mut renderer, &settings);
         let (raw, filtered) = views::openness(&frame);
         let filtered_truth = views::filtered(&truth, &frame, &settings);
         let edges = edges(&truth);
-        let sampling_part =
-            |settings: &Settings| rmse(&views::openness(&render(&renderer, settings)).1, &filtered_truth);
+        let mut sampling_part =
+            |settings: &Settings| rmse(&views::openness(&render(&mut renderer, settings)).1, &filtered_truth);
         let four = sampling_part(&Settings { spp: 4, ..settings.clone() });
         let interleaved = rmse(&filtered, &filtered_truth);
         // Plain Monte Carlo is the "random" of the bars; a good set per pixel lies between.

@@ -35,7 +35,7 @@ fn scene(placed: &[(Shape, Affine3A)]) -> Scene {
 }
 
 /// Mean and variance of the mean of the openness at one point, over 64 points that differ by nothing but their samples.
-fn openness(renderer: &Renderer, settings: &Settings, position: Vec3, normal: Vec3) -> (f64, f64) {
+fn openness(renderer: &mut Renderer, settings: &Settings, position: Vec3, normal: Vec3) -> (f64, f64) {
     let mut values = Vec::new();
     for seed in 0..16 {
         let settings = Settings { seed, ..settings.clone() };
@@ -64,9 +64,9 @@ fn a_sphere_above_a_point() {
                     Quat::from_rotation_x(1.0),
                     (direction + far) * scale,
                 );
-                let renderer = Renderer::new(scene(&[(Shape::Sphere { radius: 0.5 * sine }, placement)]));
+                let mut renderer = Renderer::new(scene(&[(Shape::Sphere { radius: 0.5 * sine }, placement)]));
                 let (position, settings) = (far * scale, unlimited(1e3 * scale));
-                let (mean, variance) = openness(&renderer, &settings, position, Vec3::Y);
+                let (mean, variance) = openness(&mut renderer, &settings, position, Vec3::Y);
                 // Rays leave from where their offset puts them, which is nearer to the sphere.
                 let view = renderer.view(&settings).unwrap_or_else(|error| panic!("{error}"));
                 let origin = view.offset.apply(position, Vec3::Y, position.abs().max_element());
@@ -90,8 +90,8 @@ fn the_lower_face_of_a_cylinder() {
     for (height, bottom, top) in [(1.0_f32, 0.5_f32, 0.5_f32), (3.0, 0.8, 0.2), (0.1, 2.0, 0.0)] {
         let shape = Shape::Cylinder { height, radius_bottom: bottom, radius_top: top };
         let placement = Affine3A::from_translation(Vec3::Y * (1.0 + 0.5 * height));
-        let renderer = Renderer::new(scene(&[(shape, placement)]));
-        let (mean, variance) = openness(&renderer, &unlimited(1e3), Vec3::ZERO, Vec3::Y);
+        let mut renderer = Renderer::new(scene(&[(shape, placement)]));
+        let (mean, variance) = openness(&mut renderer, &unlimited(1e3), Vec3::ZERO, Vec3::Y);
         let square = f64::from(bottom * bottom);
         let expected = 1.0 - square / (square + 1.0);
         assert!((mean - expected).abs() < 3.0 * variance.sqrt() + 1e-6, "{mean} for {expected}");
@@ -158,21 +158,22 @@ fn closed_things_are_closed_from_within() {
 fn a_sphere_rests_on_triangles() {
     let mut scene = scene(&[(Shape::Sphere { radius: 1.0 }, Affine3A::from_translation(Vec3::Y))]);
     let corner = |x: f32, z: f32| Vec3::new(x, 0.0, z) * 1e4;
-    scene.meshes.push(Mesh {
+    let floor = Mesh {
         positions: vec![corner(-1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0)],
         triangles: vec![[0, 1, 2], [0, 2, 3]],
         ..Mesh::default()
-    });
+    };
+    scene.meshes.push(floor.into());
     scene.instances.push(Instance::default());
-    let renderer = Renderer::new(scene);
+    let mut renderer = Renderer::new(scene);
     for x in [0.5_f32, 1.0, 3.0] {
         // On the floor: the sphere touches the horizon's plane, so all of it is above: sin α = 1 / √(x² + 1), cos θ the same.
-        let (mean, variance) = openness(&renderer, &unlimited(1e3), Vec3::X * x, Vec3::Y);
+        let (mean, variance) = openness(&mut renderer, &unlimited(1e3), Vec3::X * x, Vec3::Y);
         let sine = 1.0 / (f64::from(x) * f64::from(x) + 1.0).sqrt();
         let expected = 1.0 - sine * sine * sine;
         assert!((mean - expected).abs() < 3.0 * variance.sqrt() + 1e-4, "{x}: {mean} for {expected}");
     }
     // On the sphere at height 1, half of the sky is floor: the normal is level.
-    let (mean, variance) = openness(&renderer, &unlimited(1e3), Vec3::new(1.0, 1.0, 0.0), Vec3::X);
+    let (mean, variance) = openness(&mut renderer, &unlimited(1e3), Vec3::new(1.0, 1.0, 0.0), Vec3::X);
     assert!((mean - 0.5).abs() < 3.0 * variance.sqrt() + 1e-3, "{mean}");
 }

@@ -103,7 +103,7 @@ fn filtering(c: &mut Criterion) {
 }
 
 fn frame(c: &mut Criterion) {
-    let renderer = Renderer::new(ambray::scene::atrium::atrium());
+    let mut renderer = Renderer::new(ambray::scene::atrium::atrium());
     let settings = Settings { size: Size { width: 320, height: 180 }, ..Settings::default() };
     let mut group = c.benchmark_group("atrium, 320x180, 8 spp");
     group.sample_size(20);

@@ -10,7 +10,7 @@ use ambray::{
 use glam::Vec3;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let renderer = Renderer::new(atrium::atrium());
+    let mut renderer = Renderer::new(atrium::atrium());
     let settings = Settings { spp: 256, radius: Auto::Value(1.0), ..Settings::default() };
     let at = |i: u16| Vec3::new(-6.0 + 0.5 * f32::from(i), 0.05, 0.0);
     let points: Vec<_> = (0..25).map(|i| QueryPoint { position: at(i), normal: Vec3::Y, class: 0 }).collect();

@@ -5,7 +5,7 @@
 use ambray::{Aov, Control, Renderer, scene::atrium, settings::Settings};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let renderer = Renderer::new(atrium::atrium());
+    let mut renderer = Renderer::new(atrium::atrium());
     let progress = |share: f32| eprint!("\r{:3.0} %", 100.0 * share);
     let control = Control { progress: &progress, ..Control::default() };
     let frame = renderer.render(&Settings::default(), control)?;

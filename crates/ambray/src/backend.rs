@@ -7,13 +7,16 @@ use std::{
 
 use ambray_core::{
     control::Control,
+    frame::PoseStats,
     trace::{Hit, Ray, Trace},
 };
 use ambray_cpu::{BuildOptions, CpuBackend};
-use ambray_scene::Scene;
+use ambray_scene::{Scene, animation::Pose};
 use ambray_vulkan::{
     AccelerationOptions, Context, DeviceOptions, TraceMode, VulkanBackend, VulkanError, VulkanOptions,
 };
+
+use crate::RenderError;
 
 /// Who renders.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -59,6 +62,8 @@ pub struct RendererOptions {
 #[derive(Debug)]
 pub(crate) struct Backends {
     scene: Arc<Scene>,
+    /// Where the scene was moved; `None` while it is as it was opened.
+    pose: Option<Pose>,
     build: BuildOptions,
     vulkan: Option<VulkanBackend>,
     cpu: OnceLock<CpuBackend>,
@@ -75,6 +80,13 @@ pub(crate) enum Backend<'a> {
     Cpu(&'a CpuBackend),
 }
 
+/// The backend in use, to be changed.
+#[derive(Debug)]
+pub(crate) enum BackendMut<'a> {
+    Vulkan(&'a mut VulkanBackend),
+    Cpu(&'a mut CpuBackend),
+}
+
 impl Backends {
     /// Makes `scene` ready.
     pub(crate) fn new(
@@ -84,6 +96,7 @@ impl Backends {
     ) -> Result<Self, VulkanError> {
         let mut backends = Self {
             scene,
+            pose: None,
             build: options.build,
             vulkan: None,
             cpu: OnceLock::new(),
@@ -106,6 +119,7 @@ impl Backends {
     pub(crate) fn with_scene(&self, scene: Arc<Scene>, control: &Control<'_>) -> Result<Self, VulkanError> {
         let mut backends = Self {
             scene,
+            pose: None,
             build: self.build,
             vulkan: None,
             cpu: OnceLock::new(),
@@ -132,6 +146,39 @@ impl Backends {
         }
     }
 
+    /// Who renders now.
+    pub(crate) fn current_mut(&mut self) -> BackendMut<'_> {
+        if self.vulkan.is_some() && self.reason.get().is_none() {
+            return BackendMut::Vulkan(self.vulkan.as_mut().expect("just seen"));
+        }
+        self.cpu();
+        BackendMut::Cpu(self.cpu.get_mut().expect("just made"))
+    }
+
+    /// Moves the scene to `pose`, for the current backend. Returns the scene there.
+    pub(crate) fn pose(&mut self, pose: &Pose, control: &Control<'_>) -> Result<PoseStats, RenderError> {
+        let mut scene = Arc::clone(&self.scene);
+        let stats = match self.current_mut() {
+            BackendMut::Cpu(cpu) => {
+                let stats = cpu.pose(pose, control.threads)?;
+                scene = Arc::clone(cpu.world().surfaces().scene());
+                stats
+            }
+            BackendMut::Vulkan(vulkan) => {
+                Arc::make_mut(&mut scene).place(pose);
+                vulkan.pose(&scene, pose, control)?
+            }
+        };
+        self.scene = scene;
+        self.pose = Some(pose.clone());
+        Ok(stats)
+    }
+
+    /// The scene at its pose. On a device the vertices of what deforms are as they were when it was opened.
+    pub(crate) const fn scene(&self) -> &Arc<Scene> {
+        &self.scene
+    }
+
     /// Why the processor renders although a device might.
     pub(crate) fn reason(&self) -> Option<&str> {
         self.reason.get().map(String::as_str)
@@ -155,7 +202,13 @@ impl Backends {
     }
 
     fn cpu(&self) -> &CpuBackend {
-        self.cpu.get_or_init(|| CpuBackend::new(Arc::clone(&self.scene), self.build))
+        self.cpu.get_or_init(|| {
+            let mut scene = Arc::clone(&self.scene);
+            if let Some(pose) = &self.pose {
+                Arc::make_mut(&mut scene).deform(pose);
+            }
+            CpuBackend::new(scene, self.build)
+        })
     }
 }
 

@@ -24,20 +24,39 @@ pub(crate) fn radius((low, high): (Vec3, Vec3)) -> f32 {
     if smallest > 0.0 { RADIUS_SHARE * smallest } else { 1.0 }
 }
 
-/// A perspective camera that shows the scene, and a word on how it was found.
-///
-/// Objects are seen from outside, from the front, the right and above. A scene that surrounds its middle is an
-/// interior and is seen from one end of it; surfaces that turn their backs to the middle are the skin of an object.
-pub(crate) fn camera(
-    scene: &Scene,
-    bounds: (Vec3, Vec3),
-    trace: &impl Trace,
-    fov: f32,
-    aspect: f32,
-) -> (SceneCamera, &'static str) {
-    match interior(scene, bounds, trace) {
-        Some((eye, target)) => (looking(eye, target, fov), "inside, along the longest free way"),
-        None => (outside(bounds, fov, aspect), "framed from the bounds"),
+/// How a scene without cameras is looked at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Framing {
+    /// It surrounds its middle: seen from one end of it.
+    Inside {
+        /// Position of the camera.
+        eye: Vec3,
+        /// Point that it looks at.
+        target: Vec3,
+    },
+    /// It is an object: seen from the front, the right and above. Surfaces that turn their backs to the middle are its
+    /// skin.
+    Outside {
+        /// Box around the scene.
+        bounds: (Vec3, Vec3),
+    },
+}
+
+impl Framing {
+    /// Looks around within the scene.
+    pub(crate) fn of(scene: &Scene, bounds: (Vec3, Vec3), trace: &impl Trace) -> Self {
+        match interior(scene, bounds, trace) {
+            Some((eye, target)) => Self::Inside { eye, target },
+            None => Self::Outside { bounds },
+        }
+    }
+
+    /// A perspective camera that shows the scene, and a word on how it was found.
+    pub(crate) fn camera(&self, fov: f32, aspect: f32) -> (SceneCamera, &'static str) {
+        match *self {
+            Self::Inside { eye, target } => (looking(eye, target, fov), "inside, along the longest free way"),
+            Self::Outside { bounds } => (outside(bounds, fov, aspect), "framed from the bounds"),
+        }
     }
 }
 
@@ -148,7 +167,7 @@ mod tests {
         let triangles = triangles.map(|[a, b, c]| if turned { [a, c, b] } else { [a, b, c] }).collect();
         let mesh = Mesh { positions: (0..8).map(corner).collect(), triangles, ..Mesh::default() };
         let scene = Scene {
-            meshes: vec![mesh],
+            meshes: vec![mesh.into()],
             instances: vec![Instance {
                 mesh: 0,
                 world_from_object: Affine3A::IDENTITY,
@@ -188,10 +207,10 @@ mod tests {
     #[test]
     fn rooms_are_seen_from_within_and_things_from_without() {
         let (scene, tracer) = room(false);
-        let (inside, _) = camera(&scene, BOX, &tracer, 0.9, 1.5);
+        let (inside, _) = Framing::of(&scene, BOX, &tracer).camera(0.9, 1.5);
         assert!(inside.position.abs().max_element() < 3.0, "{inside:?}");
         let (scene, tracer) = room(true);
-        let (outside, _) = camera(&scene, BOX, &tracer, 0.9, 1.5);
+        let (outside, _) = Framing::of(&scene, BOX, &tracer).camera(0.9, 1.5);
         assert!(outside.position.max_element() > 3.0, "{outside:?}");
     }
 
@@ -199,7 +218,7 @@ mod tests {
     fn the_whole_box_is_in_the_picture() {
         let (fov, aspect) = (0.9_f32, 1.5_f32);
         for high in [Vec3::splat(3.0), Vec3::new(30.0, 0.0, 1.0), Vec3::new(0.1, 50.0, 0.1)] {
-            let (camera, _) = camera(&Scene::default(), (-high, high), &Void, fov, aspect);
+            let (camera, _) = Framing::of(&Scene::default(), (-high, high), &Void).camera(fov, aspect);
             let right = camera.forward.cross(camera.up);
             for i in 0..8 {
                 let seen = high * Vec3::new(sign(i & 1), sign(i & 2), sign(i & 4)) - camera.position;

@@ -7,7 +7,7 @@
 //! ```
 //! use ambray::{Control, Renderer, scene::atrium, settings::{Settings, Size}};
 //!
-//! let renderer = Renderer::new(atrium::atrium());
+//! let mut renderer = Renderer::new(atrium::atrium());
 //! let settings = Settings { size: Size { width: 64, height: 36 }, ..Settings::default() };
 //! let frame = renderer.render(&settings, Control::default())?;
 //! assert!(frame.ambient.iter().all(|v| (0.0..=1.0).contains(&v.x)));
@@ -27,7 +27,7 @@ pub use ambray_core::{
     aov::{Aov, AovKind},
     camera,
     control::Control,
-    frame::{Frame, FrameStats, GBufferPixel, RayCounts, StageTimes},
+    frame::{Frame, FrameStats, GBufferPixel, PoseStats, RayCounts, StageTimes},
     light,
     query::{QueryPoint, QueryResult},
     settings, shape,

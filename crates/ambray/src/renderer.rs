@@ -1,23 +1,27 @@
 //! The renderer: a scene made ready for tracing, from which frames and points are evaluated.
 
-use std::{sync::Arc, time::Duration};
+use std::{
+    sync::{Arc, OnceLock},
+    time::{Duration, Instant},
+};
 
 use ambray_core::{
     control::Control,
-    frame::{Frame, FrameStats},
+    frame::{Frame, FrameStats, PoseStats, StageTimes},
     query::{QueryPoint, QueryResult},
     settings::{Settings, SettingsError},
     trace::{Hit, Ray, Trace},
     view::View,
 };
 use ambray_cpu::{BackendError, BuildOptions};
-use ambray_scene::Scene;
+use ambray_scene::{Scene, animation::Moment};
 use ambray_vulkan::{AccelerationStats, DeviceReport, TraceMode, VulkanError};
 use glam::Vec3;
 
 use crate::{
     BackendChoice, RendererOptions,
     backend::{Backend, Backends, DeviceTrace},
+    framing::Framing,
     resolve,
 };
 
@@ -31,6 +35,14 @@ pub enum RenderError {
     /// The scene has no camera of this name or number.
     #[error("camera {name} is not in the scene: {known}")]
     UnknownCamera {
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        known: String,
+    },
+    /// The scene has no animation of this name or number.
+    #[error("animation {name} is not in the scene: {known}")]
+    UnknownAnimation {
         /// What was asked for.
         name: String,
         /// What there is.
@@ -111,10 +123,13 @@ pub enum Machine {
 /// A scene made ready for tracing.
 #[derive(Debug)]
 pub struct Renderer {
-    scene: Arc<Scene>,
-    /// Box around the scene, found once.
-    bounds: Option<(Vec3, Vec3)>,
     backends: Backends,
+    /// Box around the scene as it was opened.
+    bounds: (Vec3, Vec3),
+    /// How the scene, as it was opened, is looked at; found when it is first needed.
+    framing: OnceLock<Framing>,
+    /// What the scene shows; `None` is the scene as it was opened.
+    moment: Option<Moment>,
 }
 
 impl Renderer {
@@ -150,8 +165,13 @@ impl Renderer {
     /// As [`on_cpu`](Self::on_cpu).
     pub fn open(scene: Scene, options: &RendererOptions, control: Control<'_>) -> Result<Self, RenderError> {
         let scene = Arc::new(scene);
-        let backends = Backends::new(Arc::clone(&scene), options, &control)?;
-        Ok(Self { bounds: scene.bounds(), scene, backends })
+        Ok(Self::with_backends(Backends::new(scene, options, &control)?))
+    }
+
+    fn with_backends(backends: Backends) -> Self {
+        // An empty scene is looked at as if a box of two units were there.
+        let bounds = backends.scene().bounds().unwrap_or((Vec3::NEG_ONE, Vec3::ONE));
+        Self { backends, bounds, framing: OnceLock::new(), moment: None }
     }
 
     /// Makes another scene ready for the same backend. A device keeps its compiled programs.
@@ -163,8 +183,7 @@ impl Renderer {
     /// As [`on_cpu`](Self::on_cpu).
     pub fn with_scene(&self, scene: Scene, control: Control<'_>) -> Result<Self, RenderError> {
         let scene = Arc::new(scene);
-        let backends = self.backends.with_scene(Arc::clone(&scene), &control)?;
-        Ok(Self { bounds: scene.bounds(), scene, backends })
+        Ok(Self::with_backends(self.backends.with_scene(scene, &control)?))
     }
 
     /// Who renders. May change from a device to the processor when the device fails.
@@ -220,10 +239,10 @@ impl Renderer {
         }
     }
 
-    /// The scene.
+    /// The scene at the moment that it shows. On a device, the vertices of what deforms stay as they were when it was opened.
     #[must_use]
     pub fn scene(&self) -> &Scene {
-        &self.scene
+        self.backends.scene()
     }
 
     /// What building took.
@@ -240,57 +259,77 @@ impl Renderer {
             }
         };
         BuildStats {
-            triangles: self.scene.triangle_count(),
-            instances: (self.scene.instances.len() + self.scene.shape_instances.len()) as u64,
+            triangles: self.scene().triangle_count(),
+            instances: (self.scene().instances.len() + self.scene().shape_instances.len()) as u64,
             acceleration_bytes: bytes,
             build_time,
         }
     }
 
-    /// Checks `settings` and replaces every `auto` by a value of the scene.
-    pub fn view(&self, settings: &Settings) -> Result<View, RenderError> {
-        let errors = settings.validate();
-        if !errors.is_empty() {
-            return Err(RenderError::Settings(errors));
+    /// Shows the scene at the time that `settings` ask for. The calls that evaluate light do so by themselves; a call before
+    /// them shows what the move takes.
+    ///
+    /// # Errors
+    /// If the scene has no such animation, or the device fails.
+    pub fn pose(&mut self, settings: &Settings, control: Control<'_>) -> Result<PoseStats, RenderError> {
+        let start = Instant::now();
+        let moment = resolve::moment(settings, self.scene())?;
+        let Some(rig) = self.scene().rig.clone().filter(|_| moment != self.moment) else {
+            return Ok(PoseStats { decay: 1.0, ..PoseStats::default() });
+        };
+        if resolve::needs_framing(settings, self.scene()) {
+            self.framing()?;
         }
-        self.stepping_in(|backend| match backend {
-            Backend::Cpu(cpu) => resolve::view(settings, &self.scene, self.bounds, cpu.world()),
-            Backend::Vulkan(vulkan) => {
-                let trace = DeviceTrace::new(vulkan);
-                let view = resolve::view(settings, &self.scene, self.bounds, &trace);
-                trace.finish()?;
-                view
+        let pose = rig.pose(moment.as_ref());
+        let mut stats = match self.backends.pose(&pose, &control) {
+            Err(RenderError::Vulkan(error)) => {
+                self.backends.step_in(error)?;
+                self.backends.pose(&pose, &control)?
             }
-        })
+            done => done?,
+        };
+        self.moment = moment;
+        stats.total = start.elapsed();
+        Ok(stats)
+    }
+
+    /// Checks `settings` and replaces every `auto` by a value of the scene: of its cameras and lights at the time asked for,
+    /// else of the scene as it was opened, so that nothing automatic changes while an animation plays.
+    pub fn view(&mut self, settings: &Settings) -> Result<View, RenderError> {
+        self.prepare(settings, Control::default()).map(|(view, _)| view)
     }
 
     /// Renders a frame. On the processor the same settings and scene give the same frame, bit for bit, for any number of
     /// threads; devices round differently.
-    pub fn render(&self, settings: &Settings, control: Control<'_>) -> Result<Frame, RenderError> {
-        let view = self.view(settings)?;
-        self.stepping_in(|backend| match backend {
+    pub fn render(&mut self, settings: &Settings, control: Control<'_>) -> Result<Frame, RenderError> {
+        let (view, moved) = self.prepare(settings, control)?;
+        let mut frame = self.stepping_in(|backend| match backend {
             Backend::Cpu(cpu) => Ok(cpu.render(settings, &view, control)?),
             Backend::Vulkan(vulkan) => Ok(vulkan.render(settings, &view, control)?),
-        })
+        })?;
+        add(&mut frame.stats.times, &moved);
+        Ok(frame)
     }
 
     /// Renders a frame and throws it away, without copying it from a device: what it took is what counts.
-    pub fn measure(&self, settings: &Settings, control: Control<'_>) -> Result<FrameStats, RenderError> {
-        let view = self.view(settings)?;
-        self.stepping_in(|backend| match backend {
+    pub fn measure(&mut self, settings: &Settings, control: Control<'_>) -> Result<FrameStats, RenderError> {
+        let (view, moved) = self.prepare(settings, control)?;
+        let mut stats = self.stepping_in(|backend| match backend {
             Backend::Cpu(cpu) => Ok(cpu.render(settings, &view, control)?.stats),
             Backend::Vulkan(vulkan) => Ok(vulkan.measure(settings, &view, control)?),
-        })
+        })?;
+        add(&mut stats.times, &moved);
+        Ok(stats)
     }
 
     /// Evaluates ambient light at `points`; result `i` belongs to point `i`.
     pub fn query(
-        &self,
+        &mut self,
         settings: &Settings,
         points: &[QueryPoint],
         control: Control<'_>,
     ) -> Result<Vec<QueryResult>, RenderError> {
-        let view = self.view(settings)?;
+        let (view, _) = self.prepare(settings, control)?;
         for (index, point) in points.iter().enumerate() {
             check_point(point).map_err(|reason| RenderError::Point { index, reason })?;
         }
@@ -298,6 +337,39 @@ impl Renderer {
             Backend::Cpu(cpu) => Ok(cpu.query(settings, &view, points, control)?),
             Backend::Vulkan(vulkan) => Ok(vulkan.query(settings, &view, points, control)?),
         })
+    }
+
+    /// The scene at its moment, and the view of it.
+    fn prepare(
+        &mut self,
+        settings: &Settings,
+        control: Control<'_>,
+    ) -> Result<(View, PoseStats), RenderError> {
+        let errors = settings.validate();
+        if !errors.is_empty() {
+            return Err(RenderError::Settings(errors));
+        }
+        let moved = self.pose(settings, control)?;
+        let view = resolve::view(settings, self.scene(), self.bounds, &|| self.framing())?;
+        Ok((view, moved))
+    }
+
+    /// How a scene without cameras is looked at. Found once: [`pose`](Self::pose) sees to it that it is found in the scene as
+    /// it was opened.
+    fn framing(&self) -> Result<Framing, RenderError> {
+        if let Some(&framing) = self.framing.get() {
+            return Ok(framing);
+        }
+        let framing = self.stepping_in(|backend| match backend {
+            Backend::Cpu(cpu) => Ok(Framing::of(self.scene(), self.bounds, cpu.world())),
+            Backend::Vulkan(vulkan) => {
+                let trace = DeviceTrace::new(vulkan);
+                let framing = Framing::of(self.scene(), self.bounds, &trace);
+                trace.finish()?;
+                Ok(framing)
+            }
+        })?;
+        Ok(*self.framing.get_or_init(|| framing))
     }
 
     /// The closest hit of each of `rays`.
@@ -322,6 +394,14 @@ impl Renderer {
             done => done,
         }
     }
+}
+
+/// Adds what moving the scene took to a frame.
+fn add(times: &mut StageTimes, moved: &PoseStats) {
+    times.deformation += moved.deformation;
+    times.bottom_level += moved.bottom_level;
+    times.top_level += moved.top_level;
+    times.total += moved.total;
 }
 
 fn check_point(point: &QueryPoint) -> Result<(), &'static str> {

@@ -6,13 +6,18 @@ use ambray_core::{
     offset::RayOffset,
     openness::Openness,
     settings::{Auto, Falloff, NearRadiance, Rgb, Settings, Triple},
-    trace::Trace,
     view::View,
 };
-use ambray_scene::{Scene, SceneCamera};
+use ambray_scene::{
+    Scene, SceneCamera,
+    animation::{Clips, Moment},
+};
 use glam::Vec3;
 
-use crate::{RenderError, framing};
+use crate::{
+    RenderError,
+    framing::{self, Framing},
+};
 
 /// Irradiance of the additional sun where only its direction is set.
 const SUN_STRENGTH: f32 = 3.0;
@@ -25,14 +30,48 @@ const BACKGROUND: Vec3 = Vec3::splat(0.2);
 /// Vertical angle of view where no camera says otherwise, degrees.
 const VERTICAL_FOV: f32 = 50.0;
 
+/// The word for all animations at once.
+const ALL: &str = "all";
+
+/// What of the scene's animations plays, and when; `None` is the scene at rest.
+pub(crate) fn moment(settings: &Settings, scene: &Scene) -> Result<Option<Moment>, RenderError> {
+    let (name, time) = (settings.animation.value(), settings.time.value());
+    if name.is_none() && time.is_none() {
+        return Ok(None);
+    }
+    let unknown = |known: String| RenderError::UnknownAnimation {
+        name: name.cloned().unwrap_or_else(|| "0".to_owned()),
+        known,
+    };
+    let rig = scene.rig.as_ref().ok_or_else(|| unknown("it has none".to_owned()))?;
+    let clips = match name {
+        None => Clips::One(0),
+        Some(name) => match rig.clip(name) {
+            Some(index) => Clips::One(index),
+            None if name == ALL => Clips::All,
+            None => {
+                let names = rig.clips.iter().enumerate().map(|(i, clip)| format!("{i} ({})", clip.name));
+                return Err(unknown(format!("it has {}", names.collect::<Vec<_>>().join(", "))));
+            }
+        },
+    };
+    let time = f64::from(time.copied().unwrap_or(0.0));
+    Ok(Some(Moment { clips, time, repeat: settings.animation_loop }))
+}
+
+/// Whether the camera of `settings` depends on a look around in the scene.
+pub(crate) fn needs_framing(settings: &Settings, scene: &Scene) -> bool {
+    scene.cameras.is_empty() && settings.camera.value().is_none()
+}
+
+/// `bounds` are those of the scene as it was opened, and `framing` looks around in it: what is automatic does not follow
+/// an animation.
 pub(crate) fn view(
     settings: &Settings,
     scene: &Scene,
-    bounds: Option<(Vec3, Vec3)>,
-    trace: &impl Trace,
+    bounds: (Vec3, Vec3),
+    framing: &dyn Fn() -> Result<Framing, RenderError>,
 ) -> Result<View, RenderError> {
-    // An empty scene is looked at as if a box of two units were there.
-    let bounds = bounds.unwrap_or((Vec3::NEG_ONE, Vec3::ONE));
     let radius = settings.radius.value().copied().or(scene.radius).unwrap_or_else(|| framing::radius(bounds));
     let openness = openness(settings, radius);
     // All hits keep the weighted average equal to the sum per hit; the plain one ends at R (spec §3).
@@ -40,7 +79,7 @@ pub(crate) fn view(
     let near_limit = if plain { radius } else { openness.reach() };
     let rgb = |color: &Auto<Rgb>| color.value().map(|&color| Vec3::from(color));
     let sky = rgb(&settings.ambient).or(scene.ambient);
-    let (camera, camera_origin) = camera(settings, scene, bounds, trace)?;
+    let (camera, camera_origin) = camera(settings, scene, framing)?;
     Ok(View {
         camera,
         camera_origin,
@@ -86,8 +125,7 @@ fn unit(v: Vec3) -> Vec3 {
 fn camera(
     settings: &Settings,
     scene: &Scene,
-    bounds: (Vec3, Vec3),
-    trace: &impl Trace,
+    framing: &dyn Fn() -> Result<Framing, RenderError>,
 ) -> Result<(Camera, String), RenderError> {
     let (width, height) = (settings.size.width, settings.size.height);
     let vec3 = |value: &Auto<Triple>| value.value().map(|&value| Vec3::from(value));
@@ -99,7 +137,7 @@ fn camera(
         }
         None => {
             let fov = settings.vertical_fov.unwrap_or(VERTICAL_FOV).to_radians();
-            let (camera, how) = framing::camera(scene, bounds, trace, fov, width as f32 / height as f32);
+            let (camera, how) = framing()?.camera(fov, width as f32 / height as f32);
             (camera, how.to_owned())
         }
     };

@@ -219,8 +219,12 @@ pub struct StageReport {
     pub ambient_ms: f64,
     /// Filter and composition.
     pub filter_ms: f64,
-    /// Acceleration structures that a device rebuilds for each frame.
-    pub structures_ms: f64,
+    /// Bending the vertices of what deforms.
+    pub deformation_ms: f64,
+    /// Refitting or rebuilding bottom-level structures of what deforms.
+    pub bottom_level_ms: f64,
+    /// Building the top-level structure.
+    pub top_level_ms: f64,
     /// Copying the frame from a device, wall time.
     pub transfer_ms: f64,
     /// The whole frame, wall time. The first frame of a device compiles its programs.
@@ -236,7 +240,9 @@ impl StageReport {
             direct_ms: milliseconds(times.direct),
             ambient_ms: milliseconds(times.ambient),
             filter_ms: milliseconds(times.filter),
-            structures_ms: milliseconds(times.structures),
+            deformation_ms: milliseconds(times.deformation),
+            bottom_level_ms: milliseconds(times.bottom_level),
+            top_level_ms: milliseconds(times.top_level),
             transfer_ms: milliseconds(times.transfer),
             total_ms: milliseconds(times.total),
         }
@@ -393,7 +399,9 @@ pub fn times_line(times: &StageReport) -> String {
         ("direct", times.direct_ms, true),
         ("ambient", times.ambient_ms, true),
         ("filter", times.filter_ms, true),
-        ("structures", times.structures_ms, false),
+        ("deformation", times.deformation_ms, false),
+        ("bottom level", times.bottom_level_ms, false),
+        ("top level", times.top_level_ms, false),
         ("transfer", times.transfer_ms, false),
     ];
     let told = stages.into_iter().filter(|&(_, ms, always)| always || ms > 0.0);

@@ -128,8 +128,12 @@ pub struct StageTimes {
     pub ambient: Duration,
     /// Geometry-aware filter and composition.
     pub filter: Duration,
-    /// Structures that are rebuilt for each frame.
-    pub structures: Duration,
+    /// Bending the vertices of what deforms to the pose of the frame.
+    pub deformation: Duration,
+    /// Refitting or rebuilding the bottom-level structures of what deforms.
+    pub bottom_level: Duration,
+    /// Building the top-level structure; on the CPU its share of moving the scene.
+    pub top_level: Duration,
     /// Copying the planes from a device to the host.
     pub transfer: Duration,
     /// The whole frame, without building the scene.
@@ -145,6 +149,27 @@ pub struct FrameStats {
     pub times: StageTimes,
     /// Threads used.
     pub threads: usize,
+}
+
+/// What moving the scene to another pose took.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PoseStats {
+    /// Bending the vertices of what deforms.
+    pub deformation: Duration,
+    /// Refitting or rebuilding the bottom-level structures of what deforms.
+    pub bottom_level: Duration,
+    /// Building the top-level structure; zero where each frame builds its own.
+    pub top_level: Duration,
+    /// The whole move, evaluation of the animation included.
+    pub total: Duration,
+    /// Structures that were refitted.
+    pub refitted: u32,
+    /// Structures that were built anew.
+    pub rebuilt: u32,
+    /// Structures kept for what deforms, all poses counted.
+    pub kept: u32,
+    /// Surface-area cost of the refitted structures over that of their builds: the largest; 1 where none was refitted.
+    pub decay: f32,
 }
 
 impl Frame {

@@ -55,7 +55,7 @@ fn terrain() -> Scene {
     let instances = (0..2)
         .map(|mesh| Instance { mesh, world_from_object: Affine3A::IDENTITY, ..Instance::default() })
         .collect();
-    Scene { meshes: vec![ground, columns], instances, ..Scene::default() }
+    Scene { meshes: vec![ground.into(), columns.into()], instances, ..Scene::default() }
 }
 
 /// Rays from points above the ground, 16 neighbours in one direction each: the order of deinterleaved ambient rays.

@@ -1,6 +1,7 @@
 //! Encoded images to [`Image`]s: sizes checked first, then decoded in parallel.
 
 use std::io::Cursor;
+use std::sync::Arc;
 
 use image::{ImageReader, Limits};
 use rayon::prelude::*;
@@ -22,7 +23,7 @@ pub(crate) struct Encoded<'a> {
 }
 
 /// Decodes all images; the results are in the order of the images and their uses.
-pub(crate) fn decode_all(encoded: &[Encoded<'_>]) -> Outcome<Vec<Image>> {
+pub(crate) fn decode_all(encoded: &[Encoded<'_>]) -> Outcome<Vec<Arc<Image>>> {
     let mut left = limits::TEXELS;
     let mut texels = Vec::with_capacity(encoded.len());
     for image in encoded {
@@ -38,7 +39,7 @@ pub(crate) fn decode_all(encoded: &[Encoded<'_>]) -> Outcome<Vec<Image>> {
     // The first error in file order, whichever thread was first.
     let mut images = Vec::new();
     for result in decoded {
-        images.extend(result?);
+        images.extend(result?.into_iter().map(Arc::new));
     }
     Ok(images)
 }

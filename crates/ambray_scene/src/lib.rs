@@ -1,6 +1,7 @@
 //! Scenes: what is there to be lit.
 #![forbid(unsafe_code)]
 
+pub mod animation;
 pub mod atrium;
 mod decode;
 mod error;

@@ -1,8 +1,11 @@
 //! The scene as the backends see it: flat lists that refer to each other by index.
 
+use std::sync::Arc;
+
 use ambray_core::{light::Light, shape::Shape};
 use glam::{Affine3A, Vec3};
 
+use crate::animation::Rig;
 use crate::{Image, Material, Mesh, Texture};
 
 /// Everything that can be rendered. Instances share meshes, meshes share materials, textures share images.
@@ -10,8 +13,8 @@ use crate::{Image, Material, Mesh, Texture};
 pub struct Scene {
     /// File stem or built-in name.
     pub name: String,
-    /// Meshes in object space.
-    pub meshes: Vec<Mesh>,
+    /// Meshes in object space. Scenes at different moments share those that do not deform.
+    pub meshes: Vec<Arc<Mesh>>,
     /// Placed meshes.
     pub instances: Vec<Instance>,
     /// Shapes given by formulas, in object space.
@@ -23,7 +26,7 @@ pub struct Scene {
     /// Images with samplers.
     pub textures: Vec<Texture>,
     /// Decoded images.
-    pub images: Vec<Image>,
+    pub images: Vec<Arc<Image>>,
     /// The file's own lights, world space.
     pub lights: Vec<Light>,
     /// The file's own cameras, world space.
@@ -32,6 +35,8 @@ pub struct Scene {
     pub ambient: Option<Vec3>,
     /// Near-field radius that the scene was made for, scene units.
     pub radius: Option<f32>,
+    /// How the scene moves; `None` if it does not.
+    pub rig: Option<Arc<Rig>>,
 }
 
 /// A mesh placed in the world.

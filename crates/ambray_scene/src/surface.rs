@@ -433,7 +433,7 @@ fn is_opaque_by_mesh(scene: &Scene) -> Vec<bool> {
         if material.alpha_mode == AlphaMode::Opaque { f32::INFINITY } else { material.base_color.w * texture }
     };
     let least: Vec<f32> = scene.materials.iter().map(least).collect();
-    let is_opaque = |mesh: &Mesh| {
+    let is_opaque = |mesh: &Arc<Mesh>| {
         let of_vertices = || mesh.colors.iter().map(|color| color.w).fold(1.0, f32::min);
         let alpha = || least[mesh.material as usize] * of_vertices();
         match scene.materials[mesh.material as usize].alpha_mode {
@@ -471,11 +471,11 @@ mod tests {
         let instances = vec![Instance { mesh: 0, world_from_object: placement, ..Instance::default() }];
         let materials = vec![material];
         Surfaces::new(Arc::new(Scene {
-            meshes: vec![mesh],
+            meshes: vec![Arc::new(mesh)],
             instances,
             materials,
             textures,
-            images,
+            images: images.into_iter().map(Arc::new).collect(),
             ..Scene::default()
         }))
     }

@@ -338,11 +338,11 @@ fn checkers_follow_the_object() {
 
     // The same pattern on triangles.
     let scene = Scene {
-        meshes: vec![Mesh {
+        meshes: vec![Arc::new(Mesh {
             positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
             triangles: vec![[0, 1, 2]],
             ..Mesh::default()
-        }],
+        })],
         instances: vec![ambray_scene::Instance::default()],
         materials: vec![Material { checker: Some(checker), ..Material::default() }],
         ..Scene::default()

@@ -7,13 +7,13 @@ use std::{
 
 use ambray_core::{
     control::Control,
-    frame::{Frame, FrameStats, StageTimes},
+    frame::{Frame, FrameStats, PoseStats, StageTimes},
     query::{QueryPoint, QueryResult},
     settings::{NearRadiance, RadianceSource, Sampling, Settings, Thin},
     trace::{Hit, Ray},
     view::View,
 };
-use ambray_scene::{Scene, surface::Surfaces};
+use ambray_scene::{Scene, animation::Pose, surface::Surfaces};
 
 use crate::{
     Acceleration, AccelerationOptions, AccelerationStats, Context, Culling, DeviceKind, Result, TraceMode,
@@ -100,6 +100,17 @@ impl VulkanBackend {
             options,
             programs: Arc::clone(programs),
         })
+    }
+
+    /// Moves the scene to `pose`: `scene` is the one on the device, with its instances [placed](Scene::place) there.
+    pub fn pose(&mut self, scene: &Arc<Scene>, pose: &Pose, control: &Control<'_>) -> Result<PoseStats> {
+        let start = Instant::now();
+        let mut scene = Scene::clone(scene);
+        scene.deform(pose);
+        let deformation = start.elapsed();
+        *self = self.with_scene(&Arc::new(scene), control)?;
+        let total = start.elapsed();
+        Ok(PoseStats { deformation, bottom_level: total - deformation, total, ..PoseStats::default() })
     }
 
     /// The device.
@@ -352,7 +363,7 @@ const fn label(work: StepWork) -> &'static str {
 
 fn stage<'a>(times: &'a mut StageTimes, label: &str) -> &'a mut Duration {
     match label {
-        "structures" => &mut times.structures,
+        "structures" => &mut times.top_level,
         "primary" => &mut times.primary,
         "direct" => &mut times.direct,
         "filter" => &mut times.filter,

@@ -144,7 +144,7 @@ struct Images {
 }
 
 impl Images {
-    fn of(images: &[Image]) -> Result<Self> {
+    fn of(images: &[Arc<Image>]) -> Result<Self> {
         let mut all = Self::default();
         for image in images {
             all.first.push(place("image levels", &all.levels)?);

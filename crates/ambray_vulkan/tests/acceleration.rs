@@ -134,7 +134,9 @@ fn motley() -> Scene {
     let masked = Mesh { material: 1, ..square("masked", 4) };
     let mut scene = Scene {
         name: "motley".into(),
-        meshes: vec![square("once", 20), square("often", 6), broken, masked, square("deforming", 5)],
+        meshes: [square("once", 20), square("often", 6), broken, masked, square("deforming", 5)]
+            .map(Arc::new)
+            .into(),
         materials: vec![
             Material::default(),
             Material { alpha_mode: ambray_scene::AlphaMode::Mask(2.0), ..Material::default() },
@@ -211,7 +213,7 @@ fn nothing_is_a_scene_too() {
     let mut broken = square("broken", 1);
     broken.positions.fill(Vec3::ONE);
     let scene = Scene {
-        meshes: vec![broken],
+        meshes: vec![broken.into()],
         instances: vec![Instance::default(); 3],
         materials: vec![Material::default()],
         ..Scene::default()

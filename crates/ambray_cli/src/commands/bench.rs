@@ -126,11 +126,11 @@ fn measure(
 ) -> anyhow::Result<(SceneBench, usize)> {
     let source = scene_source::open(path, args.gltf_scene.as_deref())?;
     let scene = SceneReport::of(&source);
-    let renderer = renderer(source.scene, options, &args.run)?;
+    let mut renderer = renderer(source.scene, options, &args.run)?;
     let backend = BackendReport::of(&renderer);
     let _graceful = signals::Graceful::begin();
     let variants = if args.thin_cost { thin_cost::variants(settings) } else { vec![settings.clone()] };
-    let measured = frames(&renderer, args, &variants)?;
+    let measured = frames(&mut renderer, args, &variants)?;
     if BackendReport::of(&renderer) != backend {
         bail!("the device failed while it was measured: the times mean nothing");
     }
@@ -165,9 +165,9 @@ pub(super) struct Measured {
 }
 
 /// Measures frames of all `variants` in turn, so that a machine that slows down does so for all of them.
-fn frames(renderer: &Renderer, args: &BenchArgs, variants: &[Settings]) -> anyhow::Result<Vec<Measured>> {
+fn frames(renderer: &mut Renderer, args: &BenchArgs, variants: &[Settings]) -> anyhow::Result<Vec<Measured>> {
     let progress = Progress::new("measuring", args.run.quiet);
-    let measure =
+    let mut measure =
         |settings: &Settings| renderer.measure(settings, control(&args.run, &|_| ())).map_err(explained);
     for _ in 0..args.warmup {
         variants.iter().try_for_each(|settings| measure(settings).map(|_| ()))?;
@@ -236,7 +236,9 @@ fn medians(stages: &[StageReport]) -> StageReport {
         direct_ms: median(|s| s.direct_ms),
         ambient_ms: median(|s| s.ambient_ms),
         filter_ms: median(|s| s.filter_ms),
-        structures_ms: median(|s| s.structures_ms),
+        deformation_ms: median(|s| s.deformation_ms),
+        bottom_level_ms: median(|s| s.bottom_level_ms),
+        top_level_ms: median(|s| s.top_level_ms),
         transfer_ms: median(|s| s.transfer_ms),
         total_ms: median(|s| s.total_ms),
     }

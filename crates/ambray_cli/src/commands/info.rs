@@ -37,7 +37,7 @@ pub fn run(args: &InfoArgs) -> anyhow::Result<()> {
     let source = scene_source::open(path, args.gltf_scene.as_deref())?;
     let scene = SceneReport::of(&source);
     let contents = Contents::of(&source.scene);
-    let renderer = if args.acceleration {
+    let mut renderer = if args.acceleration {
         let options = args.device.options(args.grouping.grouping);
         Renderer::open(source.scene, &options, Control::default()).map_err(super::explained)?
     } else {

@@ -43,9 +43,9 @@ pub fn run(args: &QueryArgs) -> anyhow::Result<()> {
     let reader = Reader::new(input, name, args.points_format);
 
     let source = scene_source::open(&args.scene.scene, args.scene.gltf_scene.as_deref())?;
-    let renderer = renderer(source.scene, &options, &args.run)?;
+    let mut renderer = renderer(source.scene, &options, &args.run)?;
     let mut job =
-        Job { args, settings: &settings, renderer: &renderer, reader, length, done: Done::default() };
+        Job { args, settings: &settings, renderer: &mut renderer, reader, length, done: Done::default() };
     // Ctrl-C ends the program at once here, even where it waits for more points; temporary files are removed.
     let mut batch = Batch::default();
     if let Some(saved) = &saved {
@@ -82,7 +82,7 @@ fn open(path: &Path) -> anyhow::Result<(Box<dyn BufRead>, Option<u64>)> {
 struct Job<'a> {
     args: &'a QueryArgs,
     settings: &'a Settings,
-    renderer: &'a Renderer,
+    renderer: &'a mut Renderer,
     reader: Reader<Box<dyn BufRead>>,
     length: Option<u64>,
     done: Done,

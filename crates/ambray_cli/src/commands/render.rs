@@ -33,7 +33,7 @@ pub fn run(args: &RenderArgs) -> anyhow::Result<()> {
 
     let source = scene_source::open(&args.scene.scene, args.scene.gltf_scene.as_deref())?;
     let scene = SceneReport::of(&source);
-    let renderer = renderer(source.scene, &options, &args.run)?;
+    let mut renderer = renderer(source.scene, &options, &args.run)?;
     let graceful = signals::Graceful::begin();
     let progress = Progress::new("rendering", args.run.quiet);
     let report_share = |share| progress.report(share);

@@ -111,8 +111,8 @@ pub(super) fn table(costs: &[ThinCost], size: Size) -> String {
 impl Measured {
     /// Time of the passes alone: waiting between submissions, of which costlier frames have more, is not theirs.
     fn passes_ms(&self) -> f64 {
-        let StageReport { primary_ms, direct_ms, ambient_ms, filter_ms, structures_ms, .. } = self.stages();
-        primary_ms + direct_ms + ambient_ms + filter_ms + structures_ms
+        let StageReport { primary_ms, direct_ms, ambient_ms, filter_ms, top_level_ms, .. } = self.stages();
+        primary_ms + direct_ms + ambient_ms + filter_ms + top_level_ms
     }
 
     fn median_ms(&self) -> f64 {

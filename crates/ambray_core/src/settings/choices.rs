@@ -75,6 +75,14 @@ choices! {
         /// after filtering both batches: less downward bias
         AfterFilter,
     }
+    /// Accumulation of ambient light over frames (spec §12).
+    Temporal {
+        /// every frame by itself
+        #[default]
+        Off,
+        /// with earlier frames where the surface was seen, as far as nothing that moves makes them untrue
+        On,
+    }
     /// Which sample set a pixel uses (spec §6).
     Sampling {
         /// 16 classes over 4 × 4 pixels, each good alone and all good together

@@ -10,8 +10,8 @@ mod validate;
 mod values;
 
 pub use choices::{
-    Falloff, FilterTest, NearRadiance, Normals, RadianceSource, Sampling, Sequence, Thin, ThinMinimum,
-    ToneMap, Window,
+    Falloff, FilterTest, NearRadiance, Normals, RadianceSource, Sampling, Sequence, Temporal, Thin,
+    ThinMinimum, ToneMap, Window,
 };
 pub use preset::Preset;
 pub use table::{Settings, SettingsPatch};

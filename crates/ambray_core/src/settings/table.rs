@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Auto, Falloff, FilterTest, NearRadiance, Normals, RadianceSource, Rgb, Sampling, Sequence, Size, Thin,
-    ThinMinimum, ToneMap, Triple, Window,
+    Auto, Falloff, FilterTest, NearRadiance, Normals, RadianceSource, Rgb, Sampling, Sequence, Size,
+    Temporal, Thin, ThinMinimum, ToneMap, Triple, Window,
 };
 
 macro_rules! settings {
@@ -146,6 +146,20 @@ settings! {
     /// Smallest cosine between the normals of neighbours, -1 to 1; -1 accepts all
     #[arg(value_name = "COSINE", allow_negative_numbers = true)]
     filter_cos_normal: f32 = 0.95;
+
+    ["Animation"]
+    /// Animation of the file, by name or number from 0, or the word all for all at once; auto is the first
+    #[arg(value_name = "NAME")]
+    animation: Auto<String> = Auto::Auto;
+    /// Time in the animation, seconds; auto is its start if an animation is named, else the scene at rest
+    #[arg(value_name = "SECONDS")]
+    time: Auto<f32> = Auto::Auto;
+    /// Start over after the end of the animation; otherwise its last pose holds
+    #[arg(value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
+    animation_loop: bool = true;
+    /// Accumulation over the frames of a sequence: each continues the sample sequence, and keeps what is still true
+    #[arg(value_enum, value_name = "MODE")]
+    temporal: Temporal = Temporal::Off;
 
     ["Direct light"]
     /// Use the lights of the scene

@@ -12,20 +12,23 @@ mod stages;
 mod world;
 
 use std::{
-    sync::{Arc, Mutex, PoisonError},
+    sync::{
+        Arc, Mutex, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
     time::Instant,
 };
 
 use ambray_core::{
     control::{Cancelled, Control},
-    frame::{Frame, FrameStats},
+    frame::{Frame, FrameStats, PoseStats},
     gather::GatherParams,
     query::{QueryPoint, QueryResult},
     sampling::SampleSets,
     settings::Settings,
     view::View,
 };
-use ambray_scene::Scene;
+use ambray_scene::{Scene, animation::Pose, surface::Surfaces};
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 
 pub use world::CpuWorld;
@@ -48,6 +51,11 @@ pub enum BackendError {
 #[derive(Debug)]
 pub struct CpuBackend {
     world: CpuWorld,
+    options: BuildOptions,
+    /// Surfaces at the pose of the last frame that was rendered, if the scene has moved since: where motion vectors begin.
+    previous: Option<Arc<Surfaces>>,
+    /// Whether a frame of the current pose was rendered.
+    rendered: AtomicBool,
     /// The threads of the last call, kept for the next one.
     pool: Mutex<Option<(usize, Arc<ThreadPool>)>>,
 }
@@ -56,13 +64,36 @@ impl CpuBackend {
     /// Builds the trees of `scene`.
     #[must_use]
     pub fn new(scene: Arc<Scene>, options: BuildOptions) -> Self {
-        Self { world: CpuWorld::new(scene, options), pool: Mutex::default() }
+        Self {
+            world: CpuWorld::new(scene, options),
+            options,
+            previous: None,
+            rendered: AtomicBool::new(false),
+            pool: Mutex::default(),
+        }
     }
 
     /// The scene as the method sees it.
     #[must_use]
     pub const fn world(&self) -> &CpuWorld {
         &self.world
+    }
+
+    /// Moves the scene to `pose`, which is of its rig.
+    pub fn pose(&mut self, pose: &Pose, threads: usize) -> Result<PoseStats, BackendError> {
+        let start = Instant::now();
+        let pool = self.pool(threads)?;
+        if *self.rendered.get_mut() {
+            *self.rendered.get_mut() = false;
+            self.previous = Some(Arc::clone(self.world.surfaces()));
+        }
+        let mut scene = Scene::clone(self.world.surfaces().scene());
+        scene.place(pose);
+        pool.install(|| scene.deform(pose));
+        let deformation = start.elapsed();
+        self.world = pool.install(|| CpuWorld::new(Arc::new(scene), self.options));
+        let total = start.elapsed();
+        Ok(PoseStats { deformation, bottom_level: total - deformation, total, ..PoseStats::default() })
     }
 
     /// Renders a frame.
@@ -73,6 +104,7 @@ impl CpuBackend {
         control: Control<'_>,
     ) -> Result<Frame, BackendError> {
         let start = Instant::now();
+        self.rendered.store(true, Ordering::Relaxed);
         let pool = self.pool(control.threads)?;
         let samples = sample_sets(settings);
         let params = gather_params(settings, view, &samples);

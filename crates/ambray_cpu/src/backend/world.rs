@@ -31,7 +31,7 @@ impl CpuWorld {
 
     /// Attributes of surfaces.
     #[must_use]
-    pub fn surfaces(&self) -> &Surfaces {
+    pub const fn surfaces(&self) -> &Arc<Surfaces> {
         &self.surfaces
     }
 }

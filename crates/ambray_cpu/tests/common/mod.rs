@@ -40,6 +40,7 @@ pub fn scene(meshes: Vec<Mesh>) -> Scene {
     let instances = (0..meshes.len() as u32)
         .map(|mesh| Instance { mesh, world_from_object: Affine3A::IDENTITY, ..Instance::default() })
         .collect();
+    let meshes = meshes.into_iter().map(Into::into).collect();
     Scene { meshes, instances, materials: vec![ambray_scene::Material::default()], ..Scene::default() }
 }
 

@@ -1,6 +1,7 @@
 //! Collects shapes, materials and placements into a [`Scene`].
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use glam::{Affine2, Vec2, Vec3, Vec4};
 
@@ -28,7 +29,7 @@ pub(super) struct MeshId(u32);
 impl Builder {
     /// Adds an image; one repeat of it covers `size` metres.
     pub(super) fn texture(&mut self, image: Image, size: f32) -> TextureRef {
-        self.scene.images.push(image);
+        self.scene.images.push(Arc::new(image));
         let image = self.scene.images.len() as u32 - 1;
         self.scene.textures.push(Texture { image, sampler: Sampler::default() });
         let transform = Affine2::from_scale(Vec2::splat(1.0 / size));
@@ -97,7 +98,7 @@ impl Builder {
         if self.scene.materials[material.0 as usize].normal_texture.is_some() && !mesh.normals.is_empty() {
             mesh.tangents = tangents(&mesh);
         }
-        self.scene.meshes.push(mesh);
+        self.scene.meshes.push(Arc::new(mesh));
         MeshId(self.scene.meshes.len() as u32 - 1)
     }
 }

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 use std::rc::Rc;
+use std::sync::Arc;
 
 use glam::{Affine3A, DAffine3, DQuat, DVec3, Vec3};
 
@@ -193,7 +194,7 @@ impl Assembly<'_, '_> {
         self.warnings
             .tally("primitives lack the texture coordinates that their material asks for", lacks_uvs.into());
         self.corners.push(corners(&mesh));
-        self.scene.meshes.push(mesh);
+        self.scene.meshes.push(Arc::new(mesh));
         Ok((self.scene.meshes.len() - 1) as u32)
     }
 

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use crate::decode::{Encoded, decode_all};
 use crate::error::{Fault, Outcome};
@@ -56,7 +57,7 @@ impl TextureUses {
         mut self,
         doc: &Document<'_>,
         folder: &mut Folder,
-    ) -> Outcome<(Vec<Texture>, Vec<Image>)> {
+    ) -> Outcome<(Vec<Texture>, Vec<Arc<Image>>)> {
         // The decoder returns the uses of the first image, then those of the second, and so on.
         let mut first = Vec::with_capacity(self.images.len());
         let mut encoded = Vec::with_capacity(self.images.len());

@@ -14,6 +14,8 @@
 mod mtl;
 mod parse;
 
+use std::sync::Arc;
+
 use glam::Affine3A;
 
 use crate::decode::{Encoded, decode_all};
@@ -57,7 +59,7 @@ pub(crate) fn load(bytes: &[u8], folder: &mut Folder, warnings: &mut Warnings) -
             ..Instance::default()
         };
         scene.instances.push(instance);
-        scene.meshes.push(mesh);
+        scene.meshes.push(Arc::new(mesh));
     }
     let encoded: Outcome<Vec<Encoded<'_>>> = images.iter().map(|image| read_image(image, folder)).collect();
     scene.images = decode_all(&encoded?)?;

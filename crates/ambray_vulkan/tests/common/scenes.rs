@@ -40,7 +40,7 @@ pub fn room(walls: u32) -> Scene {
         place(1, Affine3A::from_translation(Vec3::new(-0.5, 0.6, -0.1 * i as f32)) * turn)
     }));
     Scene {
-        meshes: vec![quad(0), quad(1)],
+        meshes: vec![quad(0).into(), quad(1).into()],
         instances,
         shapes: vec![Shape::Sphere { radius: 0.4 }],
         shape_instances: vec![ShapeInstance {

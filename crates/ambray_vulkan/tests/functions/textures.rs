@@ -17,7 +17,7 @@ fn scene(random: &mut Random) -> Scene {
     for (width, height) in [(1, 1), (16, 16), (3, 5), (64, 7), (2, 256)] {
         for srgb in [false, true] {
             let texels = (0..width * height).map(|_| random.word().to_le_bytes()).collect();
-            scene.images.push(Image::new(String::new(), width, height, texels, srgb));
+            scene.images.push(Image::new(String::new(), width, height, texels, srgb).into());
         }
     }
     let wraps = [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp];

@@ -44,7 +44,7 @@ pub(crate) fn scene(geometry: &Value, point: Vec3, reach: f32) -> Scene {
         } else {
             let mesh = Mesh { material: i as u32, ..mesh(shape, point.as_dvec3(), f64::from(reach)) };
             scene.instances.push(Instance { mesh: scene.meshes.len() as u32, ..Instance::default() });
-            scene.meshes.push(mesh);
+            scene.meshes.push(mesh.into());
         }
     }
     scene
