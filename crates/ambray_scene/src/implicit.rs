@@ -57,14 +57,19 @@ impl ShapeFrame {
         }
     }
 
+    /// A normal of the shape's own space in the world, unit.
+    pub(crate) fn normal(&self, object: Vec3) -> Vec3 {
+        let normal: Vec3 = (self.normal_from_object * Vec3A::from(object)).into();
+        // The matrix may be tiny or huge; a direction is left as long as a component is.
+        (normal / normal.abs().max_element()).try_normalize().unwrap_or(Vec3::Y)
+    }
+
     /// The point of `shape`, placed by `instance`, at the `hit` of `ray`.
     pub(crate) fn point(&self, instance: &ShapeInstance, shape: &Shape, ray: &Ray, hit: &Hit) -> ShapePoint {
         let origin = self.object_from_world.transform_point3(ray.origin);
         let direction = self.object_from_world.transform_vector3(ray.direction);
         let object_position = shape.project(origin + direction * hit.t);
-        let normal: Vec3 = (self.normal_from_object * Vec3A::from(shape.normal(object_position))).into();
-        // The matrix may be tiny or huge; a direction is left as long as a component is.
-        let normal = (normal / normal.abs().max_element()).try_normalize().unwrap_or(Vec3::Y);
+        let normal = self.normal(shape.normal(object_position));
         let position = instance.world_from_object.transform_point3(object_position);
         ShapePoint { position, object_position, normal, reach: self.reach }
     }

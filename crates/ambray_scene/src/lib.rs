@@ -22,9 +22,10 @@ mod tangents;
 pub mod texture;
 mod warnings;
 
+pub use ambray_core::trace::Motion;
 pub use error::LoadError;
 pub use load::{LoadOptions, Loaded, SceneChoice, load, load_with};
 pub use material::{AlphaMode, Checker, Material, MaterialKind, TextureRef};
 pub use mesh::Mesh;
-pub use scene::{Instance, Motion, Scene, SceneCamera, ShapeInstance};
+pub use scene::{Instance, Scene, SceneCamera, ShapeInstance};
 pub use texture::{Filter, Image, Sampler, Texture, Wrap};

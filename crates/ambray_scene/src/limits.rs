@@ -24,6 +24,8 @@ pub const IMAGE_SIDE: u32 = 16384;
 pub const TEXELS: u64 = 1 << 29;
 /// Morph targets of a primitive.
 pub const MORPH_TARGETS: usize = 4096;
+/// Channels of all animations together.
+pub const CHANNELS: u64 = 1 << 20;
 /// Samples of a signed-distance field.
 pub const FIELD_SAMPLES: u64 = 1 << 28;
 /// Radii, heights and edges of shapes in their own units: squares and quotients of them stay normal numbers.

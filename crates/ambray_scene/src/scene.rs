@@ -6,7 +6,7 @@ use ambray_core::{light::Light, shape::Shape};
 use glam::{Affine3A, Vec3};
 
 use crate::animation::Rig;
-use crate::{Image, Material, Mesh, Texture};
+use crate::{Image, Material, Mesh, Motion, Texture};
 
 /// Everything that can be rendered. Instances share meshes, meshes share materials, textures share images.
 #[derive(Clone, Debug, Default)]
@@ -44,7 +44,7 @@ pub struct Scene {
 pub struct Instance {
     /// Index into [`Scene::meshes`].
     pub mesh: u32,
-    /// Placement; may mirror, must be invertible.
+    /// Placement; may mirror. What moves may be singular for a while: no ray hits it then.
     pub world_from_object: Affine3A,
     /// What the file's animations do to it.
     pub motion: Motion,
@@ -57,22 +57,10 @@ pub struct ShapeInstance {
     pub shape: u32,
     /// Index into [`Scene::materials`]. Shapes have no texture coordinates: textures are not read.
     pub material: u32,
-    /// Placement; may mirror, must be invertible.
+    /// Placement; may mirror. What moves may be singular for a while: no ray hits it then.
     pub world_from_object: Affine3A,
     /// What the file's animations do to it.
     pub motion: Motion,
-}
-
-/// Whether animations of the file move an instance. Acceleration structures never mix what moves with what does not.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Motion {
-    /// Nothing moves it.
-    #[default]
-    Static,
-    /// Its node or an ancestor of it moves, turns or scales.
-    Rigid,
-    /// Its vertices move against each other: by joints or morph weights.
-    Deforming,
 }
 
 /// A camera of the file.
@@ -98,7 +86,7 @@ impl Scene {
     }
 
     /// Smallest box around all instances, world space; `None` if nothing is there. Shapes count with the corners of their
-    /// own box.
+    /// own box, points that are not finite do not count.
     #[must_use]
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
         let points = self.instances.iter().flat_map(|instance| {
@@ -112,7 +100,7 @@ impl Scene {
             let corners = box_corners(self.shapes[instance.shape as usize].bounds());
             corners.map(|corner| instance.world_from_object.transform_point3(corner))
         });
-        points.chain(of_shapes).fold(None, |bounds, p| {
+        points.chain(of_shapes).filter(|p| p.is_finite()).fold(None, |bounds, p| {
             Some(bounds.map_or((p, p), |(lo, hi): (Vec3, Vec3)| (lo.min(p), hi.max(p))))
         })
     }

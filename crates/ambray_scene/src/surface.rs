@@ -6,7 +6,7 @@ use ambray_core::trace::{Hit, Ray, alpha_threshold};
 use glam::{Affine3A, Mat3A, Vec2, Vec3, Vec3A, Vec4};
 
 use crate::implicit::{ShapeFrame, ShapePoint};
-use crate::{AlphaMode, Instance, Material, MaterialKind, Mesh, Scene, ShapeInstance, TextureRef};
+use crate::{AlphaMode, Instance, Material, MaterialKind, Mesh, Motion, Scene, ShapeInstance, TextureRef};
 
 /// Answers questions about points on the surfaces of a scene.
 ///
@@ -211,6 +211,30 @@ impl Surfaces {
             reach: at.reach(),
             albedo: at.albedo(),
         }
+    }
+
+    /// Whether instance `index` of a hit can move; false for what is not there.
+    #[must_use]
+    pub fn motion(&self, index: u32) -> Motion {
+        let (i, meshes) = (index as usize, self.scene.instances.len());
+        let of_shape = || self.scene.shape_instances.get(i - meshes).map(|instance| instance.motion);
+        self.scene.instances.get(i).map(|instance| instance.motion).or_else(of_shape).unwrap_or_default()
+    }
+
+    /// Where the point at the `hit` of `ray` was in `earlier`, the surfaces of the same scene at another pose: its position,
+    /// unit geometric and unit smooth normal there, world space, turned as in [`surface_at`](Self::surface_at).
+    #[must_use]
+    pub fn point_in(&self, earlier: &Self, ray: &Ray, hit: &Hit) -> (Vec3, Vec3, Vec3) {
+        if let Some(instance) = self.scene.shape_instance(hit.instance) {
+            let object_position = self.shape_point(instance, ray, hit).object_position;
+            let index = hit.instance as usize - self.scene.instances.len();
+            let then = &earlier.scene.shape_instances[index];
+            let normal = self.scene.shapes[instance.shape as usize].normal(object_position);
+            let normal = earlier.shape_frames[index].normal(normal);
+            return (then.world_from_object.transform_point3(object_position), normal, normal);
+        }
+        let at = At::new(earlier, hit, 0.0);
+        (at.position(), at.geometric_normal, at.smooth_normal())
     }
 
     fn shape_point(&self, instance: &ShapeInstance, ray: &Ray, hit: &Hit) -> ShapePoint {

@@ -11,17 +11,20 @@ use crate::Mesh;
 ///
 /// Vertices on whose tangent their triangles disagree are split. Without normals nothing is done: the surface is flat
 /// then, and its tangents follow from each triangle.
-pub(crate) fn generate(mesh: &mut Mesh, uv_set: u32) {
+///
+/// Returns the vertices that were split, one for each vertex that was appended.
+pub(crate) fn generate(mesh: &mut Mesh, uv_set: u32) -> Vec<u32> {
     let usable = mesh.tangents.is_empty() && !mesh.normals.is_empty() && !mesh.triangles.is_empty();
     if !usable || mesh.uvs.len() <= uv_set as usize {
-        return;
+        return Vec::new();
     }
     let mut faces =
         Faces { mesh, uv_set: uv_set as usize, tangents: vec![[FALLBACK; 3]; mesh.triangles.len()] };
-    if generate_tangents(&mut faces).is_ok() {
-        let tangents = faces.tangents;
-        attach(mesh, &tangents);
+    if generate_tangents(&mut faces).is_err() {
+        return Vec::new();
     }
+    let tangents = faces.tangents;
+    attach(mesh, &tangents)
 }
 
 /// Tangent where MikkTSpace has none: some corner of a triangle without area.
@@ -70,9 +73,10 @@ impl Geometry for Faces<'_> {
     }
 }
 
-/// Stores the tangents of the triangles' corners at the vertices, splitting these where corners disagree.
-fn attach(mesh: &mut Mesh, corners: &[[Vec4; 3]]) {
+/// Stores the tangents of the triangles' corners at the vertices, splitting these where corners disagree. Returns which.
+fn attach(mesh: &mut Mesh, corners: &[[Vec4; 3]]) -> Vec<u32> {
     const UNSET: Vec4 = Vec4::ZERO;
+    let mut split = Vec::new();
     mesh.tangents = vec![UNSET; mesh.positions.len()];
     let mut copies: HashMap<(u32, [u32; 4]), u32> = HashMap::new();
     for (triangle, tangents) in corners.iter().enumerate() {
@@ -83,7 +87,10 @@ fn attach(mesh: &mut Mesh, corners: &[[Vec4; 3]]) {
                 mesh.tangents[vertex as usize] = tangent;
             } else if stored != tangent {
                 let key = (vertex, tangent.to_array().map(f32::to_bits));
-                let copy = *copies.entry(key).or_insert_with(|| copy_vertex(mesh, vertex, tangent));
+                let copy = *copies.entry(key).or_insert_with(|| {
+                    split.push(vertex);
+                    copy_vertex(mesh, vertex, tangent)
+                });
                 mesh.triangles[triangle][corner] = copy;
             }
         }
@@ -91,6 +98,7 @@ fn attach(mesh: &mut Mesh, corners: &[[Vec4; 3]]) {
     for tangent in mesh.tangents.iter_mut().filter(|t| **t == UNSET) {
         *tangent = FALLBACK;
     }
+    split
 }
 
 /// Appends a copy of `vertex` that has another tangent, and returns its index.
@@ -121,9 +129,9 @@ mod tests {
             triangles: vec![[0, 1, 2], [0, 2, 3]],
             ..Mesh::default()
         };
-        generate(&mut mesh, 0);
+        assert!(generate(&mut mesh, 0).is_empty(), "nothing to split");
         mesh.validate().expect("still a mesh");
-        assert_eq!(mesh.positions.len(), 4, "nothing to split");
+        assert_eq!(mesh.positions.len(), 4);
         for tangent in &mesh.tangents {
             assert!(tangent.truncate().abs_diff_eq(Vec3::X, 1e-6));
             // glTF's bitangent is cross(normal, tangent) · w and is the direction of the map's green: up, against v.
@@ -142,9 +150,11 @@ mod tests {
             triangles: vec![[0, 2, 1], [0, 1, 3]],
             ..Mesh::default()
         };
-        generate(&mut mesh, 0);
+        let mut split = generate(&mut mesh, 0);
         mesh.validate().expect("still a mesh");
         assert_eq!(mesh.positions.len(), 6);
+        split.sort_unstable();
+        assert_eq!(split, [0, 1]);
         assert!(mesh.triangles[0].iter().all(|&i| mesh.tangents[i as usize].x > 0.9));
         assert!(mesh.triangles[1].iter().all(|&i| mesh.tangents[i as usize].x < -0.9));
     }

@@ -203,9 +203,10 @@ fn motion_of_instances() {
         "extensions":{"KHR_implicit_shapes":{"shapes":[{"type":"sphere"}]}},
         "skins":[{"joints":[1]},{"joints":[6]}],
         "animations":[{"channels":[{"sampler":0,"target":{"node":0,"path":"rotation"}},
-            {"sampler":0,"target":{"node":3,"path":"weights"}},
+            {"sampler":1,"target":{"node":3,"path":"weights"}},
             {"sampler":0,"target":{"node":7,"path":"pointer"}},
-            {"sampler":0,"target":{"path":"scale"}}]},{}],
+            {"sampler":0,"target":{"path":"scale"}}],
+            "samplers":[{"input":5,"output":6},{"input":5,"output":5}]},{}],
         "nodes":[{"mesh":0,"children":[1]},
             {"mesh":0,"extensions":{"AMBRAY_implicit_surface":{"shape":0}}},
             {"mesh":0},{"mesh":1},{"mesh":2,"skin":0},{"mesh":2,"skin":1},
@@ -213,7 +214,9 @@ fn motion_of_instances() {
     let text = gltf(rest)
         .replace(r#""count":4,"type":"VEC3"}"#, r#""count":3,"type":"VEC3"},
             {"bufferView":1,"componentType":5121,"count":3,"type":"VEC4"},
-            {"bufferView":2,"componentType":5126,"count":3,"type":"VEC4"}"#)
+            {"bufferView":2,"componentType":5126,"count":3,"type":"VEC4"},
+            {"bufferView":0,"componentType":5126,"count":2,"type":"SCALAR"},
+            {"bufferView":0,"componentType":5126,"count":2,"type":"VEC4"}"#)
         .replace(
             r#""bufferViews":[{"buffer":0,"byteLength":64}]"#,
             r#""bufferViews":[{"buffer":0,"byteLength":64},{"buffer":1,"byteLength":12},{"buffer":2,"byteLength":48}]"#,

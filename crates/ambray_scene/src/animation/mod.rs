@@ -7,12 +7,16 @@
 //! 3. [`Scene::deform`](crate::Scene::deform) bends the meshes of the rig's [`Deformer`]s. Backends may do that themselves,
 //!    vertex by vertex, from the same pose.
 
+mod bend;
 mod clip;
 mod deform;
 mod place;
 mod pose;
 mod rig;
 mod update;
+
+pub(crate) use place::{place_camera, place_light, placed};
+pub(crate) use pose::single;
 
 pub use clip::{Channel, Clip, Interpolation, Property};
 pub use deform::{Deformer, Influence, LARGEST_COORDINATE, MorphTarget, Vertex};

@@ -3,31 +3,30 @@
 use std::sync::Arc;
 
 use ambray_core::light::Light;
-use glam::{DAffine3, DVec3, Vec3};
-use rayon::prelude::*;
+use glam::{Affine3A, DAffine3, DVec3, Mat3A, Vec3, Vec3A};
 
 use super::pose::single;
-use super::{Attachment, Pose};
-use crate::{Mesh, Scene, SceneCamera};
-
-/// Vertices that a thread deforms at a time.
-const CHUNK: usize = 4096;
+use super::{Attachment, LARGEST_COORDINATE, Pose};
+use crate::{Motion, Scene, SceneCamera};
 
 impl Scene {
     /// Moves what nodes carry to `pose`, which is of this scene's rig: instances, shapes, cameras and lights. Cameras and
     /// lights that would lose their direction stay.
     ///
-    /// Instances may become singular, such as those scaled to nothing: no ray hits them then.
+    /// Instances may become singular, such as those scaled to nothing: no ray hits them then. Those whose transform has a
+    /// number beyond [`LARGEST_COORDINATE`] are scaled to nothing at the origin.
     pub fn place(&mut self, pose: &Pose) {
         let Some(rig) = self.rig.clone() else { return };
-        let world = |attachment: &Attachment| {
-            attachment.node.map(|node| single(pose.world[node as usize] * attachment.local))
+        let place = |world_from_object: &mut Affine3A, motion: Motion, attachment: &Attachment| {
+            if let Some(node) = attachment.node.filter(|_| motion != Motion::Static) {
+                *world_from_object = placed(pose.world[node as usize] * attachment.local);
+            }
         };
         for (instance, attachment) in self.instances.iter_mut().zip(&rig.instances) {
-            instance.world_from_object = world(attachment).unwrap_or(instance.world_from_object);
+            place(&mut instance.world_from_object, instance.motion, attachment);
         }
         for (instance, attachment) in self.shape_instances.iter_mut().zip(&rig.shape_instances) {
-            instance.world_from_object = world(attachment).unwrap_or(instance.world_from_object);
+            place(&mut instance.world_from_object, instance.motion, attachment);
         }
         for (camera, &node) in self.cameras.iter_mut().zip(&rig.cameras) {
             place_camera(camera, pose.world[node as usize]);
@@ -43,34 +42,17 @@ impl Scene {
         let Some(rig) = self.rig.clone() else { return };
         for (deformer, weights) in rig.deformers.iter().zip(&pose.weights) {
             let joints = deformer.skin.map_or(&[][..], |skin| &pose.joints[skin as usize]);
-            let Mesh { positions, normals, tangents, .. } =
-                Arc::make_mut(&mut self.meshes[deformer.mesh as usize]);
-            // Chunks of an empty list are as good as none.
-            let chunks = |count: usize| (0..count).step_by(CHUNK);
-            let normals = slices(normals, positions.len());
-            let tangents = slices(tangents, positions.len());
-            let parts: Vec<_> =
-                chunks(positions.len()).zip(positions.chunks_mut(CHUNK)).zip(normals).zip(tangents).collect();
-            parts.into_par_iter().for_each(|(((first, positions), normals), tangents)| {
-                for (i, position) in positions.iter_mut().enumerate() {
-                    let vertex = deformer.vertex(first + i, weights, joints);
-                    *position = vertex.position;
-                    if let Some(normal) = normals.get_mut(i) {
-                        *normal = vertex.normal;
-                    }
-                    if let Some(tangent) = tangents.get_mut(i) {
-                        *tangent = vertex.tangent;
-                    }
-                }
-            });
+            deformer.bend(Arc::make_mut(&mut self.meshes[deformer.mesh as usize]), weights, joints);
         }
     }
 }
 
-/// Chunks of an attribute of `count` vertices; empty ones if the mesh does not have it.
-fn slices<T>(attribute: &mut [T], count: usize) -> impl Iterator<Item = &mut [T]> {
-    let missing = if attribute.is_empty() { count.div_ceil(CHUNK) } else { 0 };
-    attribute.chunks_mut(CHUNK).chain((0..missing).map(|_| <&mut [T]>::default()))
+/// `world` in single precision, or nothing at the origin where numbers are out of range.
+pub(crate) fn placed(world: DAffine3) -> Affine3A {
+    const HIDDEN: Affine3A = Affine3A { matrix3: Mat3A::ZERO, translation: Vec3A::ZERO };
+    let largest = f64::from(LARGEST_COORDINATE);
+    let within = world.to_cols_array().iter().all(|number| number.abs() <= largest);
+    if within { single(world) } else { HIDDEN }
 }
 
 /// Puts `camera` where its node is; `false` if it would have no direction there, and then it stays.

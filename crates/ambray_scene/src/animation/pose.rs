@@ -2,8 +2,8 @@
 
 use glam::{Affine3A, DAffine3};
 
-use super::Rig;
 use super::rig::Local;
+use super::{Rig, Skin};
 
 /// Where everything is at one moment: all that moving a scene needs.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -24,10 +24,7 @@ impl Pose {
             let local = local.matrix();
             world.push(node.parent.map_or(local, |parent| world[parent as usize] * local));
         }
-        let joints = rig.skins.iter().map(|skin| {
-            let joints = skin.joints.iter().zip(&skin.inverse_binds);
-            joints.map(|(&joint, bind)| single(world[joint as usize] * *bind)).collect()
-        });
+        let joints = rig.skins.iter().map(|skin| skin.matrices(&world));
         let weights = rig.deformers.iter().map(|deformer| {
             let mut weights = weights[deformer.node as usize].clone();
             weights.resize(deformer.targets.len(), 0.0);
@@ -37,7 +34,15 @@ impl Pose {
     }
 }
 
+impl Skin {
+    /// Joint matrices, world from bind space, one a joint, for the nodes' places in the world.
+    pub(crate) fn matrices(&self, world: &[DAffine3]) -> Vec<Affine3A> {
+        let joints = self.joints.iter().zip(&self.inverse_binds);
+        joints.map(|(&joint, bind)| single(world[joint as usize] * *bind)).collect()
+    }
+}
+
 /// Rounds to single precision.
-pub(super) fn single(m: DAffine3) -> Affine3A {
+pub(crate) fn single(m: DAffine3) -> Affine3A {
     Affine3A { matrix3: m.matrix3.as_mat3().into(), translation: m.translation.as_vec3a() }
 }

@@ -19,9 +19,9 @@ pub struct Rig {
     pub instances: Vec<Attachment>,
     /// What carries each of [`Scene::shape_instances`](crate::Scene::shape_instances).
     pub shape_instances: Vec<Attachment>,
-    /// Node of each of [`Scene::cameras`](crate::Scene::cameras).
+    /// Node of each of [`Scene::cameras`](crate::Scene::cameras); cameras beyond the end of this list stay.
     pub cameras: Vec<u32>,
-    /// Node of each of [`Scene::lights`](crate::Scene::lights).
+    /// Node of each of [`Scene::lights`](crate::Scene::lights); lights beyond the end of this list stay.
     pub lights: Vec<u32>,
 }
 
@@ -34,7 +34,7 @@ pub struct Node {
     pub parent: Option<u32>,
     /// Place within the parent.
     pub local: Local,
-    /// Morph weights; empty if it shows no mesh with targets.
+    /// Morph weights, one a target; empty unless the node has a [`Deformer`].
     pub weights: Vec<f32>,
 }
 
@@ -159,7 +159,7 @@ impl Rig {
 
 impl Local {
     /// Parent from node.
-    pub(super) fn matrix(&self) -> DAffine3 {
+    pub(crate) fn matrix(&self) -> DAffine3 {
         match self {
             Self::Trs(Trs { translation, rotation, scale }) => {
                 DAffine3::from_scale_rotation_translation(*scale, *rotation, *translation)

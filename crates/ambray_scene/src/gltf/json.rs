@@ -106,24 +106,31 @@ pub(super) struct FieldShape {
     pub(super) distances: Index,
 }
 
-/// What an animation moves; keyframes are not read, and what is malformed moves nothing.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Animation {
+    pub(super) name: Option<String>,
     pub(super) channels: Vec<Channel>,
+    pub(super) samplers: Vec<AnimationSampler>,
 }
 
-#[derive(Debug, Default, Deserialize)]
-#[serde(default)]
+#[derive(Debug, Deserialize)]
 pub(super) struct Channel {
+    pub(super) sampler: Index,
     pub(super) target: ChannelTarget,
 }
 
-#[derive(Debug, Default, Deserialize)]
-#[serde(default)]
+#[derive(Debug, Deserialize)]
 pub(super) struct ChannelTarget {
     pub(super) node: Option<Index>,
     pub(super) path: String,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct AnimationSampler {
+    pub(super) input: Index,
+    pub(super) output: Index,
+    pub(super) interpolation: Option<String>,
 }
 
 #[derive(Debug, Deserialize)]

@@ -10,8 +10,10 @@
 //! | accessors: all index types, sparse, interleaved, normalised, quantised | read, every byte bounds-checked |
 //! | POSITION, NORMAL, TANGENT, TEXCOORD_n, COLOR_0 | read; missing normals mean flat shading; missing tangents are generated where a normal map needs them |
 //! | other attributes | ignored |
-//! | morph targets, skins | applied as they are at rest: default weights, joints where the nodes are |
-//! | animations | not played, with a warning; what they move is marked |
+//! | morph targets, skins | applied; at rest with default weights and joints where the nodes are |
+//! | animations of nodes and morph weights: STEP, LINEAR, CUBICSPLINE | read into the scene's [`Rig`], what they move is marked; the scene itself is at rest |
+//! | animations of anything else | ignored with a warning |
+//! | animations of a node with a matrix | move its translation, rotation and scale; if it shears it stays, with a warning |
 //! | materials: base colour, normal, emission, alpha mode, doubleSided | read |
 //! | materials: metalness, roughness, occlusion texture | ignored |
 //! | images: PNG, JPEG, WebP | read if a material uses them |
@@ -26,24 +28,30 @@
 //! | other extensions | ignored with a warning; refused if required |
 
 mod accessor;
+mod animations;
 mod assemble;
 mod container;
 mod document;
 mod extensions;
+mod instancing;
 mod json;
 mod materials;
 mod motion;
 mod nodes;
-mod pose;
+mod part;
 mod primitives;
 mod shapes;
+mod skins;
 mod textures;
 mod validate;
 mod views;
 
 pub(crate) use container::is_glb;
 
+use std::sync::Arc;
+
 use crate::Scene;
+use crate::animation::Rig;
 use crate::error::Outcome;
 use crate::files::Folder;
 use crate::load::LoadOptions;
@@ -61,16 +69,18 @@ pub(crate) fn load(
     validate::check_version(&root)?;
     extensions::check(&root, warnings)?;
     validate::validate(&root)?;
-    let world = nodes::world_transforms(&root)?;
+    let hierarchy = nodes::Hierarchy::of(&root)?;
     let visible = nodes::visible(&root, options.scene.as_ref())?;
     let doc = document::Document::open(&root, binary, folder)?;
 
     let mut scene = Scene::default();
     let mut used = textures::TextureUses::default();
     scene.materials = materials::read_materials(&root, &mut used)?;
-    let moved = motion::Moved::by_animations(&root)?;
-    assemble::assemble(&doc, &visible, &world, &moved, &mut scene, warnings)?;
+    let mut rig = Rig { nodes: hierarchy.nodes(&root)?, ..Rig::default() };
+    rig.clips = animations::read_clips(&doc, &hierarchy, &mut rig.nodes, warnings)?;
+    assemble::assemble(&doc, &hierarchy, &visible, &mut rig, &mut scene, warnings)?;
+    let moves = rig.clips.iter().any(|clip| !clip.channels.is_empty());
+    scene.rig = moves.then(|| Arc::new(rig));
     (scene.textures, scene.images) = used.load(&doc, folder)?;
-    warnings.tally("animations are ignored, the scene is shown at rest", root.animations.len() as u64);
     Ok(scene)
 }

@@ -1,12 +1,9 @@
-//! What animations move. They are not played; acceleration structures want to know.
+//! What animations move: acceleration structures keep it apart from what stays.
 
 use crate::Motion;
+use crate::animation::{Clip, Node, Property, Skin};
 
-use super::json::{Index, Node, Root};
-use super::nodes::parents;
-use crate::error::Outcome;
-
-/// What the animations of a file reach.
+/// What the clips of a file reach. Nodes are those of the rig.
 #[derive(Debug)]
 pub(super) struct Moved {
     /// One a node: whether its place in the world changes.
@@ -16,57 +13,37 @@ pub(super) struct Moved {
 }
 
 impl Moved {
-    /// Follows all channels of all animations, whether or not a node shows anything.
-    pub(super) fn by_animations(root: &Root) -> Outcome<Self> {
-        let mut moved =
-            Self { places: vec![false; root.nodes.len()], weights: vec![false; root.nodes.len()] };
-        // Animations are not played, so channels without a target in the file do no harm.
-        let targets = root.animations.iter().flat_map(|animation| &animation.channels).map(|c| &c.target);
-        for target in targets {
-            let list = match target.path.as_str() {
-                "translation" | "rotation" | "scale" => &mut moved.places,
-                "weights" => &mut moved.weights,
-                _ => continue,
+    /// Follows all channels of all clips, whether or not a node shows anything.
+    pub(super) fn by_clips(nodes: &[Node], clips: &[Clip]) -> Self {
+        let mut moved = Self { places: vec![false; nodes.len()], weights: vec![false; nodes.len()] };
+        for channel in clips.iter().flat_map(|clip| &clip.channels) {
+            let list = match channel.property {
+                Property::Translation | Property::Rotation | Property::Scale => &mut moved.places,
+                Property::Weights => &mut moved.weights,
             };
-            if let Some(flag) = target.node.and_then(|node| list.get_mut(node)) {
-                *flag = true;
-            }
+            list[channel.node as usize] = true;
         }
-        let parents = parents(root)?;
-        let mut pending: Vec<Index> = (0..root.nodes.len()).filter(|&node| parents[node].is_none()).collect();
-        while let Some(node) = pending.pop() {
-            for &child in &root.nodes[node].children {
-                moved.places[child] |= moved.places[node];
-                pending.push(child);
-            }
+        // Parents stand before their children.
+        for (i, node) in nodes.iter().enumerate() {
+            moved.places[i] |= node.parent.is_some_and(|parent| moved.places[parent as usize]);
         }
-        Ok(moved)
+        moved
     }
 
-    /// Motion of what node `index` carries with it.
-    pub(super) fn node(&self, index: Index) -> Motion {
-        if self.places[index] { Motion::Rigid } else { Motion::Static }
+    /// Motion of what `node` carries with it.
+    pub(super) fn node(&self, node: u32) -> Motion {
+        if self.places[node as usize] { Motion::Rigid } else { Motion::Static }
     }
 
-    /// Motion of a primitive of `node`, which has `index`. Joints place a skinned one, the node itself does not (glTF 2.0
-    /// §3.7.3.3).
-    pub(super) fn primitive(
-        &self,
-        root: &Root,
-        node: &Node,
-        index: Index,
-        skinned: bool,
-        morphs: bool,
-    ) -> Motion {
-        if morphs && self.weights[index] {
+    /// Motion of a primitive of `node`. If it has a `skin`, joints place it, and the node does not (glTF 2.0 §3.7.3.3).
+    pub(super) fn primitive(&self, node: u32, skin: Option<&Skin>, morphs: bool) -> Motion {
+        if morphs && self.weights[node as usize] {
             return Motion::Deforming;
         }
-        match node.skin.filter(|_| skinned) {
-            Some(skin) if root.skins[skin].joints.iter().any(|&joint| self.places[joint]) => {
-                Motion::Deforming
-            }
+        match skin {
+            Some(skin) if skin.joints.iter().any(|&joint| self.places[joint as usize]) => Motion::Deforming,
             Some(_) => Motion::Static,
-            None => self.node(index),
+            None => self.node(node),
         }
     }
 }

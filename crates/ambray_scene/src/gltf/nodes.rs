@@ -1,36 +1,62 @@
-//! The node hierarchy: world transforms of all nodes and the nodes a scene shows. Nothing here recurses.
+//! The node hierarchy: the nodes of a rig and the nodes a scene shows. Nothing here recurses.
 
 use glam::{Affine3A, DAffine3, DMat3, DQuat, DVec3};
 
+use crate::animation::{self, Local, Trs, single};
 use crate::error::{Fault, Outcome};
 use crate::load::SceneChoice;
 
 use super::document::missing;
 use super::json::{Index, Node, Root};
 
-/// World transform of every node, in double precision so that long chains stay exact.
-pub(super) fn world_transforms(root: &Root) -> Outcome<Vec<DAffine3>> {
-    let parents = parents(root)?;
-    let mut world = vec![DAffine3::IDENTITY; root.nodes.len()];
-    let mut placed = 0;
-    let mut pending: Vec<Index> = (0..root.nodes.len()).filter(|&node| parents[node].is_none()).collect();
-    while let Some(index) = pending.pop() {
-        let node = &root.nodes[index];
-        let local = local_transform(node, index)?;
-        world[index] = parents[index].map_or(local, |parent| world[parent] * local);
-        placed += 1;
-        pending.extend(&node.children);
+/// The nodes in the order that a rig wants.
+#[derive(Debug)]
+pub(super) struct Hierarchy {
+    /// Nodes of the file, parents before their children.
+    order: Vec<Index>,
+    /// Parent of every node of the file.
+    parents: Vec<Option<Index>>,
+    /// Index of every node of the file in the rig.
+    pub(super) rank: Vec<u32>,
+}
+
+impl Hierarchy {
+    /// Follows the children; refuses cycles and nodes with two parents.
+    pub(super) fn of(root: &Root) -> Outcome<Self> {
+        let parents = parents(root)?;
+        let mut order = Vec::with_capacity(root.nodes.len());
+        let mut rank = vec![0; root.nodes.len()];
+        let mut pending: Vec<Index> =
+            (0..root.nodes.len()).rev().filter(|&node| parents[node].is_none()).collect();
+        while let Some(index) = pending.pop() {
+            rank[index] = order.len() as u32; // each takes bytes of the file
+            order.push(index);
+            pending.extend(root.nodes[index].children.iter().rev());
+        }
+        // With at most one parent each, nodes that cannot be reached from a root form cycles.
+        if order.len() < root.nodes.len() {
+            let on_cycle = on_cycle(&parents);
+            return Err(Fault::invalid(format!("nodes[{on_cycle}]"), "node is its own ancestor"));
+        }
+        Ok(Self { order, parents, rank })
     }
-    // With at most one parent each, nodes that cannot be reached from a root form cycles.
-    if placed < root.nodes.len() {
-        let on_cycle = on_cycle(&parents);
-        return Err(Fault::invalid(format!("nodes[{on_cycle}]"), "node is its own ancestor"));
+
+    /// The nodes of a rig, without morph weights.
+    pub(super) fn nodes(&self, root: &Root) -> Outcome<Vec<animation::Node>> {
+        let node = |&index: &Index| {
+            Ok(animation::Node {
+                name: root.nodes[index].name.clone().unwrap_or_default(),
+                parent: self.parents[index].map(|parent| self.rank[parent]),
+                local: local(&root.nodes[index], index)?,
+                weights: Vec::new(),
+            })
+        };
+        self.order.iter().map(node).collect()
     }
-    Ok(world)
 }
 
 /// Parent of every node; refuses nodes that have two.
-pub(super) fn parents(root: &Root) -> Outcome<Vec<Option<Index>>> {
+fn parents(root: &Root) -> Outcome<Vec<Option<Index>>> {
     let mut parents = vec![None; root.nodes.len()];
     for (index, node) in root.nodes.iter().enumerate() {
         for (i, &child) in node.children.iter().enumerate() {
@@ -61,24 +87,50 @@ fn on_cycle(parents: &[Option<Index>]) -> Index {
     0
 }
 
-fn local_transform(node: &Node, index: Index) -> Outcome<DAffine3> {
+fn local(node: &Node, index: Index) -> Outcome<Local> {
     if let Some(m) = node.matrix {
         let column = |i: usize| DVec3::new(m[4 * i], m[4 * i + 1], m[4 * i + 2]);
-        return Ok(DAffine3 {
-            matrix3: DMat3::from_cols(column(0), column(1), column(2)),
-            translation: column(3),
-        });
+        let matrix3 = DMat3::from_cols(column(0), column(1), column(2));
+        return Ok(Local::Matrix(DAffine3 { matrix3, translation: column(3) }));
     }
-    let rotation = match node.rotation.map(DQuat::from_array) {
+    let rotation = match node.rotation {
         None => DQuat::IDENTITY,
-        Some(q) if q.length_squared() > 0.0 => q.normalize(),
-        Some(_) => {
-            return Err(Fault::invalid(format!("nodes[{index}].rotation"), "quaternion of length zero"));
-        }
+        Some(q) => unit_quaternion(q)
+            .ok_or_else(|| Fault::invalid(format!("nodes[{index}].rotation"), "quaternion of length zero"))?,
     };
     let scale = node.scale.map_or(DVec3::ONE, DVec3::from_array);
     let translation = node.translation.map_or(DVec3::ZERO, DVec3::from_array);
-    Ok(DAffine3::from_scale_rotation_translation(scale, rotation, translation))
+    Ok(Local::Trs(Trs { translation, rotation, scale }))
+}
+
+/// `q` scaled to length 1, unless it is zero or not finite.
+fn unit_quaternion(q: [f64; 4]) -> Option<DQuat> {
+    // Scaled before squaring, so that neither tiny nor huge numbers leave the range.
+    let q = DQuat::from_array(q);
+    let largest = q.to_array().into_iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    let scaled = q * (1.0 / largest);
+    let unit = scaled * (1.0 / scaled.length());
+    unit.is_finite().then_some(unit)
+}
+
+/// Translation, rotation and scale that make up `matrix`, as far as it has them: not where it shears or is flat.
+pub(super) fn decompose(matrix: &DAffine3) -> Option<Trs> {
+    /// Deviation from the matrix, relative to its largest column: rounding of single precision.
+    const DEVIATION: f64 = 1e-6;
+    let m = matrix.matrix3;
+    let lengths = DVec3::new(m.x_axis.length(), m.y_axis.length(), m.z_axis.length());
+    // A mirroring is a negative scale; along which axis does not matter.
+    let scale = if m.determinant() < 0.0 { lengths * DVec3::new(-1.0, 1.0, 1.0) } else { lengths };
+    let axes = DMat3::from_cols(m.x_axis / scale.x, m.y_axis / scale.y, m.z_axis / scale.z);
+    if !axes.is_finite() {
+        return None;
+    }
+    let rotation = unit_quaternion(DQuat::from_mat3(&axes).to_array())?;
+    let parts = Trs { translation: matrix.translation, rotation, scale };
+    let again = Local::Trs(parts).matrix().matrix3;
+    let tolerance = DEVIATION * lengths.max_element();
+    let near = again.to_cols_array().iter().zip(m.to_cols_array()).all(|(a, b)| (a - b).abs() <= tolerance);
+    near.then_some(parts)
 }
 
 /// Nodes shown by the chosen scene, parents before children, in the order of the file.
@@ -134,14 +186,10 @@ pub(super) fn placement(world: DAffine3) -> Option<Affine3A> {
     (single.is_finite() && single.inverse().is_finite()).then_some(single)
 }
 
-/// Rounds to single precision.
-pub(super) fn single(m: DAffine3) -> Affine3A {
-    Affine3A { matrix3: m.matrix3.as_mat3().into(), translation: m.translation.as_vec3a() }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::animation::Rig;
 
     fn root(children: &[&[Index]]) -> Root {
         let node = |&children: &&[Index]| Node {
@@ -154,7 +202,7 @@ mod tests {
 
     #[track_caller]
     fn check_refused(children: &[&[Index]], expected: &str) {
-        let fault = world_transforms(&root(children)).expect_err("must be refused");
+        let fault = Hierarchy::of(&root(children)).expect_err("must be refused");
         assert!(fault.in_file(std::path::Path::new("x")).to_string().contains(expected));
     }
 
@@ -178,9 +226,37 @@ mod tests {
                 ..Node::default()
             })
             .collect();
-        let world = world_transforms(&root).expect("a chain");
+        let nodes = Hierarchy::of(&root).and_then(|hierarchy| hierarchy.nodes(&root)).expect("a chain");
+        let world = Rig { nodes, ..Rig::default() }.pose(None).world;
         assert!((world[count - 1].translation.x - 20_000.0).abs() < 1e-6);
         assert_eq!(visible(&root, None).expect("all").len(), count);
+    }
+
+    #[test]
+    fn rigs_have_parents_first() {
+        let root = root(&[&[], &[0, 3], &[], &[2]]);
+        let hierarchy = Hierarchy::of(&root).expect("a tree");
+        assert_eq!(hierarchy.rank, [1, 0, 3, 2]);
+        let nodes = hierarchy.nodes(&root).expect("sound nodes");
+        let parents: Vec<_> = nodes.iter().map(|node| node.parent).collect();
+        assert_eq!(parents, [None, Some(0), Some(0), Some(2)]);
+    }
+
+    #[test]
+    fn matrices_without_shear_fall_into_parts() {
+        let parts = Trs {
+            translation: DVec3::new(1.0, 2.0, 3.0),
+            rotation: DQuat::from_rotation_y(2.0) * DQuat::from_rotation_x(0.3),
+            scale: DVec3::new(-0.5, 2.0, 30.0),
+        };
+        let found = decompose(&Local::Trs(parts).matrix()).expect("no shear");
+        assert!(found.translation == parts.translation && found.scale.abs_diff_eq(parts.scale, 1e-12));
+        assert!(found.rotation.dot(parts.rotation).abs() > 1.0 - 1e-12);
+        let mut matrix = DAffine3::IDENTITY;
+        matrix.matrix3.y_axis.x = 1e-3;
+        assert_eq!(decompose(&matrix), None);
+        assert_eq!(decompose(&DAffine3::from_scale(DVec3::new(1.0, 0.0, 1.0))), None);
+        assert_eq!(decompose(&DAffine3::from_scale(DVec3::NAN)), None);
     }
 
     #[test]

@@ -6,6 +6,7 @@ use std::ops::Range;
 use glam::{Vec2, Vec3, Vec4};
 
 use crate::Mesh;
+use crate::animation::{Influence, MorphTarget};
 use crate::error::{Fault, Outcome};
 use crate::limits;
 use crate::warnings::Warnings;
@@ -13,7 +14,7 @@ use crate::warnings::Warnings;
 use super::accessor::Accept;
 use super::document::Document;
 use super::json::{Index, Primitive};
-use super::pose::{Deformable, Influence, MorphTarget};
+use super::part::Part;
 
 /// Primitive `primitive` of mesh `mesh`; `None` if it holds nothing that can be rendered.
 pub(super) fn read_primitive(
@@ -21,7 +22,7 @@ pub(super) fn read_primitive(
     mesh: Index,
     primitive: Index,
     warnings: &mut Warnings,
-) -> Outcome<Option<Deformable>> {
+) -> Outcome<Option<Part>> {
     let json = &doc.root.meshes[mesh].primitives[primitive];
     let at = format!("meshes[{mesh}].primitives[{primitive}]");
     let topology = match json.mode.unwrap_or(4) {
@@ -59,7 +60,7 @@ pub(super) fn read_primitive(
     doc.reserve(12 * rest.triangles.len() as u64, &at)?;
     let (influences, influences_per_vertex) = reader.influences()?;
     let targets = reader.targets()?;
-    Ok(Some(Deformable { rest, targets, influences, influences_per_vertex }))
+    Ok(Some(Part { rest, targets, influences, influences_per_vertex }))
 }
 
 fn draco(at: &str) -> Fault {

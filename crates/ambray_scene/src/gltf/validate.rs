@@ -3,7 +3,7 @@
 use crate::error::{Fault, Outcome, quoted};
 
 use super::document::missing;
-use super::json::{Index, Material, Node, Root, TextureInfo};
+use super::json::{Animation, Index, Material, Node, Root, TextureInfo};
 
 /// Checks all references.
 pub(super) fn validate(root: &Root) -> Outcome<()> {
@@ -29,6 +29,9 @@ pub(super) fn validate(root: &Root) -> Outcome<()> {
         })?;
         expect(skin.skeleton, root.nodes.len(), "node", || format!("{at}.skeleton"))?;
         expect_all(&skin.joints, root.nodes.len(), "node", || format!("{at}.joints"))?;
+    }
+    for (i, animation) in root.animations.iter().enumerate() {
+        check_animation(root, animation, &format!("animations[{i}]"))?;
     }
     for (i, scene) in root.scenes.iter().enumerate() {
         expect_all(&scene.nodes, root.nodes.len(), "node", || format!("scenes[{i}].nodes"))?;
@@ -164,6 +167,23 @@ fn check_meshes(root: &Root) -> Outcome<()> {
                     expect(Some(accessor), accessors, "accessor", || format!("{at}.targets[{k}].{name}"))?;
                 }
             }
+        }
+    }
+    Ok(())
+}
+
+fn check_animation(root: &Root, animation: &Animation, at: &str) -> Outcome<()> {
+    for (i, channel) in animation.channels.iter().enumerate() {
+        expect(Some(channel.sampler), animation.samplers.len(), "sampler", || {
+            format!("{at}.channels[{i}].sampler")
+        })?;
+        expect(channel.target.node, root.nodes.len(), "node", || format!("{at}.channels[{i}].target.node"))?;
+    }
+    for (i, sampler) in animation.samplers.iter().enumerate() {
+        for (field, accessor) in [("input", sampler.input), ("output", sampler.output)] {
+            expect(Some(accessor), root.accessors.len(), "accessor", || {
+                format!("{at}.samplers[{i}].{field}")
+            })?;
         }
     }
     Ok(())

@@ -2,9 +2,10 @@
 
 use ambray_core::camera::Projection;
 use ambray_core::light::{Cone, Light};
-use glam::{DAffine3, DVec3, Vec3};
+use glam::{DAffine3, Vec3};
 
 use crate::SceneCamera;
+use crate::animation::{place_camera, place_light};
 use crate::error::{Fault, Outcome, quoted};
 
 use super::json;
@@ -17,17 +18,10 @@ pub(super) fn camera(
     at: &str,
 ) -> Outcome<Option<SceneCamera>> {
     let projection = projection(json, at)?;
-    let (forward, up) = (direction(world, DVec3::NEG_Z), direction(world, DVec3::Y));
-    let (Some(forward), Some(up), true) = (forward, up, world.translation.as_vec3().is_finite()) else {
-        return Ok(None);
-    };
-    // Sheared nodes tilt one axis against the other.
-    let up = up
-        .reject_from_normalized(forward)
-        .try_normalize()
-        .unwrap_or_else(|| forward.any_orthonormal_vector());
     let name = json.name.as_deref().or(node_name).unwrap_or_default().to_owned();
-    Ok(Some(SceneCamera { name, position: world.translation.as_vec3(), forward, up, projection }))
+    let mut camera =
+        SceneCamera { name, position: Vec3::ZERO, forward: Vec3::NEG_Z, up: Vec3::Y, projection };
+    Ok(place_camera(&mut camera, world).then_some(camera))
 }
 
 /// Checks and converts the camera's own numbers.
@@ -63,28 +57,28 @@ pub(super) fn light(json: &json::Light, world: DAffine3, at: &str) -> Outcome<Op
     if !power.is_finite() || power.min_element() < 0.0 {
         return Err(Fault::invalid(at, "colour times intensity is negative or beyond the range of numbers"));
     }
-    let cone = match json.kind.as_str() {
-        "directional" => {
-            let to_light = direction(world, DVec3::Z);
-            return Ok(to_light.map(|to_light| Light::Directional { to_light, irradiance: power }));
+    let mut light = match json.kind.as_str() {
+        "directional" => Light::Directional { to_light: Vec3::Z, irradiance: power },
+        "point" => point(json, power, None, at)?,
+        "spot" => {
+            let (inner, outer) = cone_angles(json, at)?;
+            let cone = Cone { axis: Vec3::NEG_Z, cos_inner: libm::cosf(inner), cos_outer: libm::cosf(outer) };
+            point(json, power, Some(cone), at)?
         }
-        "point" => None,
-        "spot" => match (cone_angles(json, at)?, direction(world, DVec3::NEG_Z)) {
-            ((inner, outer), Some(axis)) => {
-                Some(Cone { axis, cos_inner: libm::cosf(inner), cos_outer: libm::cosf(outer) })
-            }
-            (_, None) => return Ok(None),
-        },
         other => {
             return Err(Fault::invalid(format!("{at}.type"), format!("no such type: {}", quoted(other))));
         }
     };
+    Ok(place_light(&mut light, world).then_some(light))
+}
+
+/// A point light or spot light at the origin.
+fn point(json: &json::Light, intensity: Vec3, cone: Option<Cone>, at: &str) -> Outcome<Light> {
     let range = json.range.unwrap_or(f32::INFINITY);
     if range.is_nan() || range <= 0.0 {
         return Err(Fault::invalid(format!("{at}.range"), format!("{range} is not positive")));
     }
-    let position = world.translation.as_vec3();
-    Ok(position.is_finite().then_some(Light::Point { position, intensity: power, range, cone }))
+    Ok(Light::Point { position: Vec3::ZERO, intensity, range, cone })
 }
 
 /// Inner and outer half-angle of a spot light in radians.
@@ -100,9 +94,4 @@ fn cone_angles(json: &json::Light, at: &str) -> Outcome<(f32, f32)> {
         return Err(Fault::invalid(format!("{at}.spot"), reason));
     }
     Ok((inner, outer))
-}
-
-/// Unit image of `axis`, if it has a direction.
-fn direction(world: DAffine3, axis: DVec3) -> Option<Vec3> {
-    world.transform_vector3(axis).try_normalize().map(|direction| direction.as_vec3())
 }

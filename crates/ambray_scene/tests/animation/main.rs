@@ -1,0 +1,6 @@
+//! Animations: what is read, how poses come out, and what is refused.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod at_rest;
