@@ -11,7 +11,7 @@ use ambray_core::{
     openness::Openness,
     sampling::{PixelKey, SampleSets},
     settings::{NearRadiance, RadianceSource, Sampling, Sequence},
-    trace::{Diffuse, Hit, Ray, Trace, World},
+    trace::{Diffuse, Hit, Motion, Ray, Trace, World},
 };
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use glam::{Vec3, Vec4};
@@ -33,6 +33,10 @@ impl Trace for Free {
 }
 
 impl World for Free {
+    fn motion(&self, _instance: u32) -> Motion {
+        Motion::Static
+    }
+
     fn diffuse_at(&self, ray: &Ray, hit: &Hit, _width: f32) -> Diffuse {
         let position = ray.origin + hit.t * ray.direction;
         Diffuse { position, geometric_normal: -ray.direction, reach: 0.0, albedo: Vec3::splat(0.5) }
@@ -53,6 +57,7 @@ fn gathering(c: &mut Criterion) {
             geometric_normal: Vec3::Y,
             reach: 0.0,
             normal: Vec3::Y,
+            instance: Hit::NONE,
             key: PixelKey { class: (i / 16) as u8, hash: i },
         })
         .collect();
@@ -71,6 +76,7 @@ fn gathering(c: &mut Criterion) {
             lights: &[],
             offset: RayOffset::UNIT,
             samples: &samples,
+            temporal: false,
         };
         let (mut scratch, mut out) = (GatherScratch::default(), vec![Gathered::default(); points.len()]);
         group.bench_function(format!("{thin:?}"), |b| {

@@ -18,7 +18,7 @@ macro_rules! aovs {
                 match self { $(Self::$variant => $name,)+ }
             }
 
-            /// Names of the channels: `R G B`, `X Y Z`, or a single one.
+            /// Names of the channels: `R G B`, `X Y Z`, `X Y`, or a single one.
             #[must_use]
             pub const fn channels(self) -> &'static [&'static str] {
                 match self { $(Self::$variant => &[$($channel),+],)+ }
@@ -74,6 +74,10 @@ aovs! {
     SampleClass = "sample-class" ["Y"], Id;
     /// Rays traced for the pixel, of all types
     RayCount = "ray-count" ["Y"], Count;
+    /// Movement of the surface point since the last frame, pixels to the right and down; 0 without --temporal on
+    Motion = "motion" ["X" "Y"], Motion;
+    /// Frames whose mean the ambient light is; 1 without --temporal on
+    History = "history" ["Y"], Count;
 }
 
 /// What the values of a plane are.
@@ -93,6 +97,8 @@ pub enum AovKind {
     Id,
     /// A count.
     Count,
+    /// A movement in the picture, pixels.
+    Motion,
 }
 
 impl fmt::Display for Aov {

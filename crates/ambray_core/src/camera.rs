@@ -1,6 +1,6 @@
 //! Cameras: from pixels to primary rays (pass 1), and the size of a pixel in the scene (spec §7).
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use crate::trace::Ray;
 
@@ -111,6 +111,21 @@ impl Camera {
         Ray { origin, t_max: f32::INFINITY, direction, seed }
     }
 
+    /// Where `point` is in the picture, in pixels from the centre of pixel (0, 0) to the right and down, and its view depth;
+    /// `None` behind a perspective camera. The place may be outside the picture.
+    #[must_use]
+    pub fn project(&self, point: Vec3) -> Option<(Vec2, f32)> {
+        let offset = point - self.position;
+        let depth = offset.dot(self.forward);
+        let pixel = self.footprint(depth);
+        let is_seen = pixel > 0.0;
+        is_seen.then(|| {
+            let x = offset.dot(self.right) / pixel + 0.5 * (self.width as f32 - 1.0);
+            let y = 0.5 * (self.height as f32 - 1.0) - offset.dot(self.up) / pixel;
+            (Vec2::new(x, y), depth)
+        })
+    }
+
     /// View depth of `point`: its distance from the camera plane, scene units.
     #[must_use]
     pub fn depth(&self, point: Vec3) -> f32 {
@@ -170,6 +185,24 @@ mod tests {
                 assert!((camera.depth(a) - depth).abs() < 1e-5);
             }
         }
+    }
+
+    #[test]
+    fn projection_inverts_rays() {
+        for projection in
+            [Projection::Perspective { vertical_fov: 0.8 }, Projection::Orthographic { height: 4.0 }]
+        {
+            let camera = camera(projection);
+            for (x, y) in [(0, 0), (639, 359), (100, 50)] {
+                let ray = camera.primary_ray(x, y, 0);
+                let point = ray.origin + 3.0 * ray.direction;
+                let (place, depth) = camera.project(point).expect("in front");
+                assert!(place.abs_diff_eq(Vec2::new(x as f32, y as f32), 1e-3), "{place} for {x}, {y}");
+                assert_eq!(depth, camera.depth(point));
+            }
+        }
+        let perspective = camera(Projection::Perspective { vertical_fov: 0.8 });
+        assert_eq!(perspective.project(perspective.position() - perspective.forward()), None);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use glam::{Vec3, Vec4};
+use glam::{Vec2, Vec3, Vec4};
 use serde::Serialize;
 
 use crate::{aov::Aov, view::View};
@@ -34,6 +34,9 @@ pub struct GBufferPixel {
     pub instance: u32,
     /// Rays traced for the pixel, of all types.
     pub rays: u32,
+    /// How far the surface point moved in the picture since the last frame, pixels to the right and down; 0 unless light is
+    /// accumulated over frames.
+    pub motion: Vec2,
 }
 
 impl GBufferPixel {
@@ -51,6 +54,7 @@ impl GBufferPixel {
         material: u32::MAX,
         instance: u32::MAX,
         rays: 0,
+        motion: Vec2::ZERO,
     };
 
     /// Whether the pixel sees a surface.
@@ -77,6 +81,9 @@ pub struct Frame {
     pub ambient: Vec<Vec4>,
     /// Mean open direction after the filter, not normalised.
     pub bent: Vec<Vec3>,
+    /// Frames whose mean [`ambient`](Self::ambient) and [`bent`](Self::bent) are: 1 unless light is accumulated over
+    /// frames.
+    pub history: Vec<f32>,
     /// The view with everything chosen: camera, radius, lights.
     pub view: View,
     /// What it took.
@@ -197,6 +204,8 @@ impl Frame {
             Aov::Material => scalars(&|i| index(self.gbuffer[i].material)),
             Aov::Instance => scalars(&|i| index(self.gbuffer[i].instance)),
             Aov::SampleClass => scalars(&|i| f32::from(self.class_of(i))),
+            Aov::Motion => pixels.flat_map(|i| self.gbuffer[i].motion.to_array()).collect(),
+            Aov::History => scalars(&|i| self.history[i]),
             Aov::RayCount => scalars(&|i| self.gbuffer[i].rays as f32),
         }
     }

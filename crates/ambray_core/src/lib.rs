@@ -34,5 +34,6 @@ pub mod query;
 pub mod sampling;
 pub mod settings;
 pub mod shape;
+pub mod temporal;
 pub mod trace;
 pub mod view;

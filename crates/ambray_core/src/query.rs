@@ -6,6 +6,7 @@ use crate::{
     gather::ShadedPoint,
     sampling::{PixelKey, pcg},
     settings::Settings,
+    trace::Hit,
 };
 
 /// A point of a surface to evaluate.
@@ -30,7 +31,14 @@ impl QueryPoint {
         let key = PixelKey { class: self.class, hash };
         // The triangle is not known; the point itself is rounded to its own coordinates at least.
         let reach = self.position.abs().max_element();
-        ShadedPoint { position: self.position, geometric_normal: normal, reach, normal, key }
+        ShadedPoint {
+            position: self.position,
+            geometric_normal: normal,
+            reach,
+            normal,
+            instance: Hit::NONE,
+            key,
+        }
     }
 }
 

@@ -90,8 +90,22 @@ pub struct Diffuse {
     pub albedo: Vec3,
 }
 
+/// Whether animations move an instance. Acceleration structures never mix what moves with what does not.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Motion {
+    /// Nothing moves it.
+    #[default]
+    Static,
+    /// It moves, turns or scales as a whole.
+    Rigid,
+    /// Its vertices move against each other: by joints or morph weights.
+    Deforming,
+}
+
 /// The scene as the method sees it: rays go in, hits and the surfaces there come out.
 pub trait World: Trace {
+    /// Whether instance `instance` can move; [`Hit::NONE`] cannot.
+    fn motion(&self, instance: u32) -> Motion;
     /// Surface at the `hit` of `ray`, averaged over a footprint of `width` scene units where textures allow.
     fn diffuse_at(&self, ray: &Ray, hit: &Hit, width: f32) -> Diffuse;
 }

@@ -68,6 +68,7 @@ pub(crate) fn frame(
         ambient_raw,
         ambient: reader.vectors(Plane::Filtered)?,
         bent: reader.vectors(Plane::FilteredBent)?.iter().map(|v| v.xyz()).collect::<Vec<Vec3>>(),
+        history: vec![1.0; count],
         view: view.clone(),
         stats,
     })

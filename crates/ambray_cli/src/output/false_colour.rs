@@ -45,6 +45,7 @@ pub fn show(frame: &Frame, aov: Aov, settings: &Settings) -> Picture {
         AovKind::Normal => plain(vectors(&values).map(normal).collect()),
         AovKind::Id => plain(values.iter().map(|&id| palette(id)).collect()),
         AovKind::Count => Picture::Grey(counts(&values)),
+        AovKind::Motion => plain(motion(&values)),
     }
 }
 
@@ -95,6 +96,13 @@ fn palette(id: f32) -> Vec3 {
     };
     let saturated = Vec3::new(channel(0.0), channel(2.0 / 3.0), channel(1.0 / 3.0));
     value * Vec3::ONE.lerp(saturated, 0.7)
+}
+
+/// To the right and down as red and green about grey, relative to the largest movement.
+fn motion(values: &[f32]) -> Vec<Vec3> {
+    let most = values.iter().map(|v| v.abs()).fold(f32::MIN_POSITIVE, f32::max);
+    let pixels = values.chunks_exact(2).map(|v| Vec3::new(v[0], v[1], 0.0) / (2.0 * most) + 0.5);
+    pixels.collect()
 }
 
 fn counts(values: &[f32]) -> Vec<f32> {

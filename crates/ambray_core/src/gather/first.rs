@@ -2,12 +2,21 @@
 
 use crate::{
     basis::Basis,
-    trace::{Hit, Ray, World},
+    trace::{Hit, Motion, Ray, World},
 };
 
 use super::{GatherParams, Gathered, Sample, ShadedPoint, radiance::RadianceScratch};
 
 use glam::Vec3;
+
+/// Whether a hit on the instance `occluder` may move against a point on the instance `receiver`.
+fn may_change(world: &impl World, receiver: u32, occluder: u32) -> bool {
+    let motion = world.motion(occluder);
+    if receiver == occluder {
+        return motion == Motion::Deforming;
+    }
+    motion != Motion::Static || world.motion(receiver) != Motion::Static
+}
 
 /// The rays of a batch of points and what became of them.
 #[derive(Debug, Default)]
@@ -48,7 +57,11 @@ impl FirstBatch {
             gathered.ambient_rays += 1;
             if hit.is_hit() {
                 gathered.ambient_hits += 1;
-                self.samples[slot as usize].distance = hit.t;
+                let sample = &mut self.samples[slot as usize];
+                sample.distance = hit.t;
+                if params.temporal {
+                    sample.changing = may_change(world, points[slot as usize / spp].instance, hit.instance);
+                }
                 if params.needs_radiance() {
                     radiance.push(world, ray, hit, hit.t * params.cone_width(), slot);
                 }
@@ -65,8 +78,13 @@ impl FirstBatch {
     fn make_rays(&mut self, params: &GatherParams<'_>, points: &[ShadedPoint], out: &[Gathered]) {
         debug_assert_eq!(points.len(), out.len());
         let spp = params.samples.spp() as usize;
-        let miss =
-            Sample { direction: Vec3::ZERO, distance: f32::INFINITY, radiance: Vec3::ZERO, azimuth: 0.0 };
+        let miss = Sample {
+            direction: Vec3::ZERO,
+            distance: f32::INFINITY,
+            radiance: Vec3::ZERO,
+            azimuth: 0.0,
+            changing: false,
+        };
         self.samples.clear();
         self.samples.resize(points.len() * spp, miss);
         self.rays.clear();

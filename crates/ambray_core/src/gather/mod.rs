@@ -38,6 +38,8 @@ pub struct ShadedPoint {
     pub reach: f32,
     /// Unit normal n about which directions are sampled.
     pub normal: Vec3,
+    /// Instance that it is on, [`Hit::NONE`](crate::trace::Hit::NONE) if that is not known.
+    pub instance: u32,
     /// Which samples the point uses.
     pub key: PixelKey,
 }
@@ -67,6 +69,8 @@ pub struct GatherParams<'a> {
     pub offset: RayOffset,
     /// Directions.
     pub samples: &'a SampleSets,
+    /// Whether [`Gathered::changing`] is wanted.
+    pub temporal: bool,
 }
 
 /// Ambient light gathered at a point.
@@ -89,6 +93,9 @@ pub struct Gathered {
     pub near_second: Vec3,
     /// Bent normal b = (1/N) Σ μ_i w_i, not normalised.
     pub bent: Vec3,
+    /// How much of 1 - O1 is due to what may move against the point: (1/N) Σ (1 - μ_i) over those hits (see
+    /// [`crate::temporal`]). 0 unless [`GatherParams::temporal`].
+    pub changing: f32,
     /// Rays of the first batch that were traced.
     pub ambient_rays: u32,
     /// Rays of the first batch that hit something.
@@ -112,6 +119,8 @@ struct Sample {
     radiance: Vec3,
     /// Azimuth v of the direction.
     azimuth: f32,
+    /// Whether what it hit may move against the point.
+    changing: bool,
 }
 
 /// Buffers that are reused from batch to batch.
@@ -167,7 +176,7 @@ fn gather_batch(
 /// Openness, near radiance and bent normal of one point from its traced rays (spec §§3, 8).
 fn combine(params: &GatherParams<'_>, samples: &[Sample], second: &SecondBatch, gathered: &mut Gathered) {
     // Sums in double precision: adding 65536 rays in single precision errs by 1e-3.
-    let mut open = 0.0;
+    let (mut open, mut changing) = (0.0, 0.0);
     let mut bent = DVec3::ZERO;
     // Σ (1 - μ) L_r, and the sums of the average: weights and weighted radiances.
     let (mut per_hit, mut weight, mut weighted) = (DVec3::ZERO, 0.0, DVec3::ZERO);
@@ -177,6 +186,7 @@ fn combine(params: &GatherParams<'_>, samples: &[Sample], second: &SecondBatch, 
         open += mu;
         bent += mu * sample.direction.as_dvec3();
         per_hit += (1.0 - mu) * radiance;
+        changing += if sample.changing { 1.0 - mu } else { 0.0 };
         if sample.distance < params.near_limit {
             let w = if params.near_radiance == NearRadiance::AveragedPlain { 1.0 } else { 1.0 - mu };
             weight += w;
@@ -205,6 +215,7 @@ fn combine(params: &GatherParams<'_>, samples: &[Sample], second: &SecondBatch, 
     gathered.second = second.openness;
     gathered.near_second = near(second.openness);
     gathered.bent = (bent / count).as_vec3();
+    gathered.changing = (changing / count) as f32;
 }
 
 impl GatherParams<'_> {

@@ -8,7 +8,7 @@ use ambray_core::{
     openness::Openness,
     sampling::{PixelKey, SampleSets},
     settings::{NearRadiance, RadianceSource, Thin},
-    trace::{Diffuse, Hit, Ray, Trace, World},
+    trace::{Diffuse, Hit, Motion, Ray, Trace, World},
 };
 use glam::{DVec3, Vec3};
 use serde_json::Value;
@@ -69,12 +69,19 @@ pub fn gather_at(case: &Value, samples: &SampleSets, change: impl Fn(&mut Gather
         lights: &[],
         offset: RayOffset::UNIT,
         samples,
+        temporal: false,
     };
     change(&mut params);
     let normal = vec3(&case["normal"]);
     let key = PixelKey::default();
-    let point =
-        ShadedPoint { position: vec3(&case["point"]), geometric_normal: normal, reach: 0.0, normal, key };
+    let point = ShadedPoint {
+        position: vec3(&case["point"]),
+        geometric_normal: normal,
+        reach: 0.0,
+        normal,
+        instance: Hit::NONE,
+        key,
+    };
     let mut out = [Gathered::default()];
     gather(&Shapes::new(&case["geometry"]), &params, &[point], &mut GatherScratch::default(), &mut out);
     out[0]
@@ -175,6 +182,10 @@ impl Trace for Shapes {
 }
 
 impl World for Shapes {
+    fn motion(&self, _instance: u32) -> Motion {
+        Motion::Static
+    }
+
     fn diffuse_at(&self, ray: &Ray, hit: &Hit, _width: f32) -> Diffuse {
         let (t, normal, i) = self.closest(ray).expect("the ray hit something");
         assert_eq!(i, hit.instance as usize);

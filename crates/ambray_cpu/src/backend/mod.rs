@@ -9,11 +9,12 @@ mod pass1;
 mod pass2;
 mod points;
 mod stages;
+mod temporal;
 mod world;
 
 use std::{
     sync::{
-        Arc, Mutex, PoisonError,
+        Arc, Mutex, MutexGuard, PoisonError,
         atomic::{AtomicBool, Ordering},
     },
     time::Instant,
@@ -25,13 +26,15 @@ use ambray_core::{
     gather::GatherParams,
     query::{QueryPoint, QueryResult},
     sampling::SampleSets,
-    settings::Settings,
+    settings::{Settings, Temporal},
     view::View,
 };
 use ambray_scene::{Scene, animation::Pose, surface::Surfaces};
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 
 pub use world::CpuWorld;
+
+use temporal::{History, Sequel};
 
 use crate::BuildOptions;
 
@@ -56,6 +59,8 @@ pub struct CpuBackend {
     previous: Option<Arc<Surfaces>>,
     /// Whether a frame of the current pose was rendered.
     rendered: AtomicBool,
+    /// What the last frame left for the next one, where light is accumulated.
+    history: Mutex<Option<History>>,
     /// The threads of the last call, kept for the next one.
     pool: Mutex<Option<(usize, Arc<ThreadPool>)>>,
 }
@@ -69,6 +74,7 @@ impl CpuBackend {
             options,
             previous: None,
             rendered: AtomicBool::new(false),
+            history: Mutex::default(),
             pool: Mutex::default(),
         }
     }
@@ -96,7 +102,7 @@ impl CpuBackend {
         Ok(PoseStats { deformation, bottom_level: total - deformation, total, ..PoseStats::default() })
     }
 
-    /// Renders a frame.
+    /// Renders a frame. With [`Temporal::On`] it continues the last one.
     pub fn render(
         &self,
         settings: &Settings,
@@ -104,17 +110,28 @@ impl CpuBackend {
         control: Control<'_>,
     ) -> Result<Frame, BackendError> {
         let start = Instant::now();
-        self.rendered.store(true, Ordering::Relaxed);
         let pool = self.pool(control.threads)?;
         let samples = sample_sets(settings);
         let params = gather_params(settings, view, &samples);
+        let earlier = self.history().take().filter(|earlier| earlier.suits(settings, view));
+        let scene_moved = !self.rendered.swap(true, Ordering::Relaxed);
+        let accumulation = (settings.temporal == Temporal::On).then(|| Sequel {
+            surfaces: self.previous.as_ref().filter(|_| scene_moved),
+            scene_moved,
+            earlier: earlier.as_ref(),
+        });
         pool.install(|| {
-            let mut pass1 = pass1::run(&self.world, settings, view, &params, control)?;
-            let pass2 = pass2::run(&mut pass1, settings, view, control)?;
+            let sequel = accumulation.as_ref();
+            let mut pass1 = pass1::run(&self.world, settings, view, &params, sequel, control)?;
+            let pass2 = pass2::run(&mut pass1, settings, view, sequel, control)?;
             let (width, height) = view.camera.size();
             let mut times = pass1.clock.shares(pass1.elapsed);
             times.filter = pass2.elapsed;
             times.total = start.elapsed();
+            let frames = pass2.history();
+            if sequel.is_some() {
+                *self.history() = Some(History::new(settings, view, pass1.guides, pass2.means));
+            }
             Ok(Frame {
                 width,
                 height,
@@ -123,10 +140,16 @@ impl CpuBackend {
                 ambient_raw: pass1.ambient,
                 ambient: pass2.ambient,
                 bent: pass2.bent,
+                history: frames,
                 view: view.clone(),
                 stats: FrameStats { rays: pass1.rays, times, threads: pool.current_num_threads() },
             })
         })
+    }
+
+    fn history(&self) -> MutexGuard<'_, Option<History>> {
+        // Whole or empty at any time, so a panic of another thread does not matter.
+        self.history.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Evaluates ambient light at `points`; result `i` belongs to point `i`.
@@ -175,5 +198,6 @@ fn gather_params<'a>(settings: &Settings, view: &'a View, samples: &'a SampleSet
         lights: &view.lights,
         offset: view.offset,
         samples,
+        temporal: settings.temporal == Temporal::On,
     }
 }

@@ -17,11 +17,12 @@ use ambray_core::{
     trace::{Hit, Ray, Trace},
     view::View,
 };
-use glam::{Vec3, Vec4, Vec4Swizzles};
+use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 use rayon::prelude::*;
 
 use super::{
     stages::{Clock, Stage},
+    temporal::Sequel,
     world::CpuWorld,
 };
 
@@ -33,11 +34,13 @@ const TILE: usize = 16;
 pub(super) struct Pass1 {
     pub(super) gbuffer: Vec<GBufferPixel>,
     pub(super) guides: Vec<Guide>,
+    /// The same points in the last frame; empty unless light is accumulated.
+    pub(super) then: Vec<Guide>,
     /// Openness and near radiance; of the first batch where the minimum is taken after the filter.
     pub(super) ambient: Vec<Vec4>,
     /// Openness and near radiance of the second batch; empty where the minimum is taken before the filter.
     pub(super) second: Vec<Vec4>,
-    /// Bent normals.
+    /// Bent normals, and in w the share of 1 - O that may change.
     pub(super) bent: Vec<Vec4>,
     pub(super) rays: RayCounts,
     pub(super) clock: Clock,
@@ -48,6 +51,7 @@ pub(super) struct Pass1 {
 struct Band<'a> {
     gbuffer: &'a mut [GBufferPixel],
     guides: &'a mut [Guide],
+    then: &'a mut [Guide],
     ambient: &'a mut [Vec4],
     second: &'a mut [Vec4],
     bent: &'a mut [Vec4],
@@ -59,6 +63,7 @@ struct Job<'a> {
     settings: &'a Settings,
     view: &'a View,
     params: &'a GatherParams<'a>,
+    sequel: Option<&'a Sequel<'a>>,
     clock: &'a Clock,
 }
 
@@ -82,6 +87,7 @@ pub(super) fn run(
     settings: &Settings,
     view: &View,
     params: &GatherParams<'_>,
+    sequel: Option<&Sequel<'_>>,
     control: Control<'_>,
 ) -> Result<Pass1, Cancelled> {
     let start = Instant::now();
@@ -91,6 +97,7 @@ pub(super) fn run(
     let mut pass = Pass1 {
         gbuffer: vec![GBufferPixel::NOTHING; pixels],
         guides: vec![Guide::NOTHING; pixels],
+        then: vec![Guide::NOTHING; if sequel.is_some() { pixels } else { 0 }],
         ambient: vec![Vec4::X; pixels],
         second: vec![Vec4::X; if after_filter { pixels } else { 0 }],
         bent: vec![Vec4::ZERO; pixels],
@@ -102,18 +109,20 @@ pub(super) fn run(
     let bands =
         pass.gbuffer.chunks_mut(rows).zip(pass.guides.chunks_mut(rows)).zip(pass.ambient.chunks_mut(rows));
     let second = pass.second.chunks_mut(rows).map(Some).chain(std::iter::repeat_with(|| None));
+    let then = pass.then.chunks_mut(rows).map(Some).chain(std::iter::repeat_with(|| None));
     let bands: Vec<Band<'_>> = bands
-        .zip(second.zip(pass.bent.chunks_mut(rows)))
-        .map(|(((gbuffer, guides), ambient), (second, bent))| Band {
+        .zip(second.zip(then).zip(pass.bent.chunks_mut(rows)))
+        .map(|(((gbuffer, guides), ambient), ((second, then), bent))| Band {
             gbuffer,
             guides,
+            then: then.unwrap_or_default(),
             ambient,
             second: second.unwrap_or_default(),
             bent,
         })
         .collect();
 
-    let job = Job { world, settings, view, params, clock: &pass.clock };
+    let job = Job { world, settings, view, params, sequel, clock: &pass.clock };
     let (count, done) = (bands.len(), AtomicUsize::new(0));
     let counts = bands.into_par_iter().enumerate().map_init(Scratch::default, |scratch, (i, mut band)| {
         let mut counts = RayCounts::default();
@@ -165,6 +174,11 @@ impl Job<'_> {
             pixel.rays = 1;
             if hit.is_hit() {
                 (*pixel, band.guides[i]) = self.surface(ray, hit);
+                if let Some(sequel) = self.sequel {
+                    let then = sequel.then(self.world.surfaces(), self.settings, &band.guides[i], ray, hit);
+                    band.then[i] = then;
+                    pixel.motion = sequel.motion((x, y), &then);
+                }
                 scratch.seen.push((i, x as u32, y as u32));
             } else {
                 pixel.emission = self.view.background;
@@ -201,6 +215,7 @@ impl Job<'_> {
             material: point.material,
             instance: hit.instance,
             rays: 1,
+            motion: Vec2::ZERO,
         };
         let footprint = camera.footprint(depth);
         (pixel, Guide { position: point.position, depth, normal: smooth_normal, footprint })
@@ -246,6 +261,7 @@ impl Job<'_> {
                 geometric_normal: pixel.geometric_normal,
                 reach: pixel.reach,
                 normal: pixel.shading_normal,
+                instance: pixel.instance,
                 key: PixelKey::new(x, y, frame, seed),
             }
         }));
@@ -260,7 +276,7 @@ impl Job<'_> {
                 band.ambient[i] = gathered.near_first.extend(gathered.first).wxyz();
                 band.second[i] = gathered.near_second.extend(gathered.second).wxyz();
             }
-            band.bent[i] = gathered.bent.extend(0.0);
+            band.bent[i] = gathered.bent.extend(gathered.changing);
             band.gbuffer[i].rays += gathered.ambient_rays + gathered.chord_rays + gathered.shadow_rays;
             counts.ambient += u64::from(gathered.ambient_rays);
             counts.chord += u64::from(gathered.chord_rays);

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use ambray_core::trace::{Diffuse, Hit, Ray, Trace, World};
+use ambray_core::trace::{Diffuse, Hit, Motion, Ray, Trace, World};
 use ambray_scene::{
     Scene,
     surface::{DiffusePoint, Surfaces},
@@ -47,6 +47,10 @@ impl Trace for CpuWorld {
 }
 
 impl World for CpuWorld {
+    fn motion(&self, instance: u32) -> Motion {
+        self.surfaces.motion(instance)
+    }
+
     fn diffuse_at(&self, ray: &Ray, hit: &Hit, width: f32) -> Diffuse {
         let point = self.surfaces.diffuse_at(ray, hit, width).facing(ray.direction);
         let DiffusePoint { position, geometric_normal, reach, albedo } = point;
