@@ -13,6 +13,8 @@ mod load;
 pub mod material;
 pub mod mesh;
 mod mip;
+mod modelling;
+pub mod moving;
 mod obj;
 mod repair;
 pub mod scene;

@@ -2,11 +2,11 @@
 
 use glam::{Vec2, Vec3};
 
-use super::builder::Builder;
 use super::palette::Palette;
-use super::pose::{Pose, sin_cos};
-use super::shapes::{Corner, Profile, Shape};
 use super::{COURT, GALLERY, PITCH, SPRINGING, Side};
+use crate::modelling::builder::Builder;
+use crate::modelling::pose::{Pose, sin_cos};
+use crate::modelling::shapes::{Corner, Profile, Shape};
 
 /// Radius of the opening of the large arches.
 const RADIUS: f32 = 1.15;

@@ -2,12 +2,12 @@
 
 use glam::{Vec2, Vec3};
 
-use super::builder::Builder;
-use super::noise::Dice;
 use super::palette::Palette;
-use super::pose::Pose;
-use super::shapes::{Profile, Shape};
 use super::{PITCH, Side, WALL};
+use crate::modelling::builder::Builder;
+use crate::modelling::noise::Dice;
+use crate::modelling::pose::Pose;
+use crate::modelling::shapes::{Profile, Shape};
 
 /// Places all furniture.
 pub(super) fn build(builder: &mut Builder, palette: &Palette) {

@@ -4,12 +4,12 @@ use core::f32::consts::TAU;
 
 use glam::{Vec2, Vec3};
 
-use super::builder::{Builder, MaterialId, MeshId};
-use super::noise::{Dice, smoothstep};
 use super::palette::Palette;
-use super::pose::Pose;
-use super::shapes::Shape;
 use super::{GALLERY, PITCH, Side};
+use crate::modelling::builder::{Builder, MaterialId, MeshId};
+use crate::modelling::noise::{Dice, smoothstep};
+use crate::modelling::pose::Pose;
+use crate::modelling::shapes::Shape;
 
 /// Height of the rods' axes.
 const ROD: f32 = 1.99;

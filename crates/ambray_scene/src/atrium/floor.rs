@@ -2,11 +2,11 @@
 
 use glam::{Vec2, Vec3};
 
-use super::builder::Builder;
-use super::noise::Dice;
 use super::palette::Palette;
-use super::shapes::{Profile, Shape};
 use super::{COURT, COURT_FLOOR, GALLERY, WALL};
+use crate::modelling::builder::Builder;
+use crate::modelling::noise::Dice;
+use crate::modelling::shapes::{Profile, Shape};
 
 /// Edge of a tile with its joint.
 const TILE: f32 = 0.7;

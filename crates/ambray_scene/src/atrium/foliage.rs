@@ -2,13 +2,13 @@
 
 use glam::{Vec2, Vec3};
 
-use super::builder::{Builder, MeshId};
-use super::noise::Dice;
 use super::palette::Palette;
-use super::pose::{Pose, sin_cos};
 use super::pots::{PLANTED, VASE_EARTH};
-use super::shapes::Shape;
 use super::{COURT_FLOOR, Side};
+use crate::modelling::builder::{Builder, MeshId};
+use crate::modelling::noise::Dice;
+use crate::modelling::pose::{Pose, sin_cos};
+use crate::modelling::shapes::Shape;
 
 /// Grows all plants.
 pub(super) fn build(builder: &mut Builder, palette: &Palette) {

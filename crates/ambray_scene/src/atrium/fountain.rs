@@ -3,11 +3,11 @@
 use glam::{Vec2, Vec3};
 
 use super::COURT_FLOOR;
-use super::builder::Builder;
 use super::palette::Palette;
-use super::pose::{Pose, sin_cos};
 use super::pots::flipped;
-use super::shapes::{Profile, Shape};
+use crate::modelling::builder::Builder;
+use crate::modelling::pose::{Pose, sin_cos};
+use crate::modelling::shapes::{Profile, Shape};
 
 /// Builds an octagonal basin of 2.9 m, a bowl on a shaft 1.35 m up, and the water in both.
 pub(super) fn build(builder: &mut Builder, palette: &Palette) {

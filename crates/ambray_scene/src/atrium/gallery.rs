@@ -3,12 +3,12 @@
 use glam::{Vec2, Vec3};
 
 use super::arches::{Opening, arch};
-use super::builder::Builder;
-use super::columns::column;
 use super::palette::Palette;
-use super::pose::{Pose, sin_cos};
-use super::shapes::{Profile, Shape};
 use super::{CEILING, COURT, GALLERY, PITCH, Side, WALL};
+use crate::modelling::builder::Builder;
+use crate::modelling::column::column;
+use crate::modelling::pose::{Pose, sin_cos};
+use crate::modelling::shapes::{Profile, Shape};
 
 /// Distance of the columns of the gallery.
 const HALF_PITCH: f32 = 0.5 * PITCH;

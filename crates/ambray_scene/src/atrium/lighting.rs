@@ -1,10 +1,10 @@
 //! Sun, sky and cameras.
 
-use ambray_core::camera::Projection;
 use ambray_core::light::Light;
 use glam::Vec3;
 
-use crate::{Scene, SceneCamera};
+use crate::Scene;
+use crate::modelling::camera::look;
 
 /// Puts the light and the cameras into `scene`; the first camera is the default one.
 pub(super) fn light(scene: &mut Scene) {
@@ -20,17 +20,4 @@ pub(super) fn light(scene: &mut Scene) {
         look("curtain-hem", Vec3::new(0.35, 0.38, 5.35), Vec3::new(-0.25, 0.13, 4.2), 42.0),
         look("gallery", Vec3::new(-8.6, 5.85, -3.2), Vec3::new(-7.7, 5.6, 4.0), 58.0),
     ];
-}
-
-/// A camera at `eye` that looks at `target`; `fov` is its full vertical angle in degrees.
-fn look(name: &str, eye: Vec3, target: Vec3, fov: f32) -> SceneCamera {
-    let forward = (target - eye).normalize();
-    let right = forward.cross(Vec3::Y).normalize();
-    SceneCamera {
-        name: name.to_owned(),
-        position: eye,
-        forward,
-        up: right.cross(forward),
-        projection: Projection::Perspective { vertical_fov: fov.to_radians() },
-    }
 }

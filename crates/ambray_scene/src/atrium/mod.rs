@@ -8,7 +8,6 @@
 //! The scene is the same on every machine, bit for bit: arithmetic is scalar, functions are `libm`'s and chance is a hash.
 
 mod arches;
-mod builder;
 mod clutter;
 mod columns;
 mod curtains;
@@ -17,11 +16,8 @@ mod foliage;
 mod fountain;
 mod gallery;
 mod lighting;
-mod noise;
 mod palette;
-mod pose;
 mod pots;
-mod shapes;
 mod textures;
 mod vaults;
 mod walls;
@@ -29,12 +25,12 @@ mod walls;
 #[cfg(test)]
 mod tests;
 
-use builder::Builder;
 use glam::Vec2;
 use palette::Palette;
-use pose::Pose;
 
 use crate::Scene;
+use crate::modelling::builder::Builder;
+use crate::modelling::pose::Pose;
 
 /// Half the size of the court between the axes of its columns, x and z.
 const COURT: Vec2 = Vec2::new(7.0, 4.2);

@@ -2,8 +2,8 @@
 
 use glam::{Affine2, Vec3};
 
-use super::builder::{Builder, MaterialId};
 use super::textures;
+use crate::modelling::builder::{Builder, MaterialId};
 use crate::{AlphaMode, Material, TextureRef};
 
 /// Handles of all materials.

@@ -2,11 +2,11 @@
 
 use glam::{Vec2, Vec3};
 
-use super::builder::Builder;
 use super::palette::Palette;
-use super::pose::Pose;
-use super::shapes::{Profile, Shape};
 use super::{COURT_FLOOR, GALLERY, Side};
+use crate::modelling::builder::Builder;
+use crate::modelling::pose::Pose;
+use crate::modelling::shapes::{Profile, Shape};
 
 /// Height of the earth in a large vase.
 pub(super) const VASE_EARTH: f32 = 0.60;

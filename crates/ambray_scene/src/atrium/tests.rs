@@ -3,7 +3,8 @@ use std::time::Instant;
 use ambray_core::light::Light;
 use glam::Vec3;
 
-use super::{Scene, atrium, curtains, shapes};
+use super::{Scene, atrium, curtains};
+use crate::modelling::shapes;
 
 #[test]
 fn size_is_as_promised() {

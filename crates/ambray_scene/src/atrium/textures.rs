@@ -2,8 +2,8 @@
 
 use glam::{Vec3, Vec4};
 
-use super::noise::{cloud, noise, smoothstep};
 use crate::Image;
+use crate::modelling::noise::{cloud, noise, smoothstep};
 
 /// Limestone: pale, clouded, with pores. To be tinted.
 pub(super) fn stone() -> Image {

@@ -2,11 +2,11 @@
 
 use glam::{Vec2, Vec3};
 
-use super::builder::Builder;
 use super::palette::Palette;
-use super::pose::{Pose, sin_cos};
-use super::shapes::Shape;
 use super::{COURT, PITCH, SPRINGING, Side};
+use crate::modelling::builder::Builder;
+use crate::modelling::pose::{Pose, sin_cos};
+use crate::modelling::shapes::Shape;
 
 /// Radius of the vaults; their edges vanish in walls and arches.
 const RADIUS: f32 = 1.235;

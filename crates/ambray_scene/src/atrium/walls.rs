@@ -2,12 +2,12 @@
 
 use glam::{Vec2, Vec3};
 
-use super::builder::Builder;
 use super::clutter::LANDING;
 use super::palette::Palette;
-use super::pose::Pose;
-use super::shapes::{Profile, Shape};
 use super::{CEILING, COURT, GALLERY, PITCH, SPRINGING, Side, WALL};
+use crate::modelling::builder::Builder;
+use crate::modelling::pose::Pose;
+use crate::modelling::shapes::{Profile, Shape};
 
 /// Thickness of the outer walls.
 const THICKNESS: f32 = 0.4;

@@ -4,28 +4,28 @@ use ambray_core::sampling::{pcg, unit_float};
 
 /// Stream of numbers in `[0, 1)`.
 #[derive(Clone, Debug)]
-pub(super) struct Dice(u32);
+pub(crate) struct Dice(u32);
 
 impl Dice {
     /// Begins the stream of `seed`.
-    pub(super) const fn new(seed: u32) -> Self {
+    pub(crate) const fn new(seed: u32) -> Self {
         Self(pcg(seed))
     }
 
     /// The next number in `[0, 1)`.
-    pub(super) const fn unit(&mut self) -> f32 {
+    pub(crate) const fn unit(&mut self) -> f32 {
         self.0 = pcg(self.0.wrapping_add(0x9e37_79b9));
         unit_float(self.0)
     }
 
     /// The next number in `[lo, hi)`.
-    pub(super) fn between(&mut self, lo: f32, hi: f32) -> f32 {
+    pub(crate) fn between(&mut self, lo: f32, hi: f32) -> f32 {
         lo + (hi - lo) * self.unit()
     }
 }
 
 /// Smooth value noise in `[0, 1]` with `cells` cells per unit; repeats with period 1.
-pub(super) fn noise(u: f32, v: f32, cells: [u32; 2], seed: u32) -> f32 {
+pub(crate) fn noise(u: f32, v: f32, cells: [u32; 2], seed: u32) -> f32 {
     let axis = |x: f32, cells: u32| {
         let x = x * cells as f32;
         let floor = libm::floorf(x);
@@ -44,7 +44,7 @@ pub(super) fn noise(u: f32, v: f32, cells: [u32; 2], seed: u32) -> f32 {
 }
 
 /// Sum of `octaves` of noise, each twice as fine and half as strong; in `[0, 1]`.
-pub(super) fn cloud(u: f32, v: f32, cells: [u32; 2], octaves: u32, seed: u32) -> f32 {
+pub(crate) fn cloud(u: f32, v: f32, cells: [u32; 2], octaves: u32, seed: u32) -> f32 {
     let (mut sum, mut weight, mut total) = (0.0, 1.0, 0.0);
     for octave in 0..octaves {
         sum += weight * noise(u, v, cells.map(|c| c << octave), seed.wrapping_add(octave));
@@ -55,7 +55,7 @@ pub(super) fn cloud(u: f32, v: f32, cells: [u32; 2], octaves: u32, seed: u32) ->
 }
 
 /// 0 below `from`, 1 above `to`, smooth between.
-pub(super) fn smoothstep(from: f32, to: f32, x: f32) -> f32 {
+pub(crate) fn smoothstep(from: f32, to: f32, x: f32) -> f32 {
     let t = ((x - from) / (to - from)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }

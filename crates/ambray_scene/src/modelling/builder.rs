@@ -14,21 +14,21 @@ const CREASE_COSINE: f32 = 0.766;
 
 /// A scene in the making.
 #[derive(Debug, Default)]
-pub(super) struct Builder {
-    pub(super) scene: Scene,
+pub(crate) struct Builder {
+    pub(crate) scene: Scene,
 }
 
 /// Handle of a material.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct MaterialId(u32);
+pub(crate) struct MaterialId(u32);
 
 /// Handle of a mesh.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct MeshId(u32);
+pub(crate) struct MeshId(u32);
 
 impl Builder {
     /// Adds an image; one repeat of it covers `size` metres.
-    pub(super) fn texture(&mut self, image: Image, size: f32) -> TextureRef {
+    pub(crate) fn texture(&mut self, image: Image, size: f32) -> TextureRef {
         self.scene.images.push(Arc::new(image));
         let image = self.scene.images.len() as u32 - 1;
         self.scene.textures.push(Texture { image, sampler: Sampler::default() });
@@ -37,23 +37,23 @@ impl Builder {
     }
 
     /// Adds a material.
-    pub(super) fn material(&mut self, material: Material) -> MaterialId {
+    pub(crate) fn material(&mut self, material: Material) -> MaterialId {
         self.scene.materials.push(material);
         MaterialId(self.scene.materials.len() as u32 - 1)
     }
 
     /// Adds a mesh with smooth normals, broken where faces meet at more than 40°.
-    pub(super) fn smooth(&mut self, name: &str, shape: &Shape, material: MaterialId) -> MeshId {
+    pub(crate) fn smooth(&mut self, name: &str, shape: &Shape, material: MaterialId) -> MeshId {
         self.mesh(name, shape, &smooth_normals(shape), material)
     }
 
     /// Adds a mesh of flat faces, without normals.
-    pub(super) fn flat(&mut self, name: &str, shape: &Shape, material: MaterialId) -> MeshId {
+    pub(crate) fn flat(&mut self, name: &str, shape: &Shape, material: MaterialId) -> MeshId {
         self.mesh(name, shape, &[], material)
     }
 
     /// Places a mesh.
-    pub(super) fn place(&mut self, mesh: MeshId, pose: &Pose) {
+    pub(crate) fn place(&mut self, mesh: MeshId, pose: &Pose) {
         self.scene.instances.push(Instance {
             mesh: mesh.0,
             world_from_object: pose.affine(),
@@ -62,13 +62,13 @@ impl Builder {
     }
 
     /// Adds a smooth mesh that is there once, as it stands.
-    pub(super) fn smooth_once(&mut self, name: &str, shape: &Shape, material: MaterialId) {
+    pub(crate) fn smooth_once(&mut self, name: &str, shape: &Shape, material: MaterialId) {
         let mesh = self.smooth(name, shape, material);
         self.place(mesh, &Pose::at(Vec3::ZERO));
     }
 
     /// Adds a flat mesh that is there once, as it stands.
-    pub(super) fn flat_once(&mut self, name: &str, shape: &Shape, material: MaterialId) {
+    pub(crate) fn flat_once(&mut self, name: &str, shape: &Shape, material: MaterialId) {
         let mesh = self.flat(name, shape, material);
         self.place(mesh, &Pose::at(Vec3::ZERO));
     }

@@ -8,23 +8,23 @@ use super::pose::{Pose, sin_cos};
 
 /// Corner of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Corner {
-    pub(super) position: Vec3,
-    pub(super) uv: Vec2,
+pub(crate) struct Corner {
+    pub(crate) position: Vec3,
+    pub(crate) uv: Vec2,
 }
 
 /// Triangles that are not yet a mesh: normals and shared vertices come when the builder adds them.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Shape {
-    pub(super) triangles: Vec<[Corner; 3]>,
+pub(crate) struct Shape {
+    pub(crate) triangles: Vec<[Corner; 3]>,
 }
 
 /// Least area of a triangle, m²; anything smaller is left out.
-pub(super) const LEAST_AREA: f32 = 1e-9;
+pub(crate) const LEAST_AREA: f32 = 1e-9;
 
 impl Shape {
     /// Adds a triangle, unless it has no area.
-    pub(super) fn triangle(&mut self, corners: [Corner; 3]) {
+    pub(crate) fn triangle(&mut self, corners: [Corner; 3]) {
         let [a, b, c] = corners.map(|c| c.position);
         if 0.5 * (b - a).cross(c - a).length() > LEAST_AREA {
             self.triangles.push(corners);
@@ -32,13 +32,13 @@ impl Shape {
     }
 
     /// Adds a quadrilateral, corners anticlockwise as seen from its front.
-    pub(super) fn quad(&mut self, [a, b, c, d]: [Corner; 4]) {
+    pub(crate) fn quad(&mut self, [a, b, c, d]: [Corner; 4]) {
         self.triangle([a, b, c]);
         self.triangle([a, c, d]);
     }
 
     /// Adds a flat quadrilateral, corners anticlockwise, textured along its first edge.
-    pub(super) fn panel(&mut self, corners: [Vec3; 4]) {
+    pub(crate) fn panel(&mut self, corners: [Vec3; 4]) {
         let u = (corners[1] - corners[0]).normalize();
         let v = u.cross(corners[3] - corners[0]).cross(u).normalize();
         let local = |p: Vec3| Vec2::new((p - corners[0]).dot(u), -(p - corners[0]).dot(v));
@@ -46,12 +46,12 @@ impl Shape {
     }
 
     /// Adds all triangles of `other`.
-    pub(super) fn append(&mut self, other: Self) {
+    pub(crate) fn append(&mut self, other: Self) {
         self.triangles.extend(other.triangles);
     }
 
     /// The same shape elsewhere.
-    pub(super) fn posed(mut self, pose: &Pose) -> Self {
+    pub(crate) fn posed(mut self, pose: &Pose) -> Self {
         for corner in self.triangles.iter_mut().flatten() {
             corner.position = pose.point(corner.position);
         }
@@ -59,7 +59,7 @@ impl Shape {
     }
 
     /// The same shape with its texture moved by `offset` metres.
-    pub(super) fn with_uv_offset(mut self, offset: Vec2) -> Self {
+    pub(crate) fn with_uv_offset(mut self, offset: Vec2) -> Self {
         for corner in self.triangles.iter_mut().flatten() {
             corner.uv += offset;
         }
@@ -67,7 +67,7 @@ impl Shape {
     }
 
     /// The same shape with its texture turned by a quarter.
-    pub(super) fn with_uv_turned(mut self) -> Self {
+    pub(crate) fn with_uv_turned(mut self) -> Self {
         for corner in self.triangles.iter_mut().flatten() {
             corner.uv = corner.uv.perp();
         }
@@ -75,7 +75,7 @@ impl Shape {
     }
 
     /// Box with the opposite corners `lo` and `hi`.
-    pub(super) fn cuboid(lo: Vec3, hi: Vec3) -> Self {
+    pub(crate) fn cuboid(lo: Vec3, hi: Vec3) -> Self {
         let p = |x: bool, y: bool, z: bool| {
             Vec3::new(if x { hi.x } else { lo.x }, if y { hi.y } else { lo.y }, if z { hi.z } else { lo.z })
         };
@@ -91,7 +91,7 @@ impl Shape {
     }
 
     /// Box of the given `size` standing on the origin.
-    pub(super) fn block(size: Vec3) -> Self {
+    pub(crate) fn block(size: Vec3) -> Self {
         let half = Vec3::new(0.5 * size.x, 0.0, 0.5 * size.z);
         Self::cuboid(-half, half + Vec3::Y * size.y)
     }
@@ -99,7 +99,7 @@ impl Shape {
     /// Surface through `rings` of equally many points; the front is where path × profile points to.
     ///
     /// A path is closed by repeating its first ring, a profile by repeating its first point.
-    pub(super) fn loft(rings: &[Vec<Vec3>]) -> Self {
+    pub(crate) fn loft(rings: &[Vec<Vec3>]) -> Self {
         let profile = &rings[0];
         let v = running_sum(profile.windows(2).map(|w| w[0].distance(w[1])));
         let longest_step =
@@ -122,7 +122,7 @@ impl Shape {
     }
 
     /// Turned about the y axis: `profile` holds (radius, height), from below to above on the outside.
-    pub(super) fn lathe(profile: &[Vec2], segments: u32) -> Self {
+    pub(crate) fn lathe(profile: &[Vec2], segments: u32) -> Self {
         let ring = |k: u32| {
             // The last ring is the first, bit for bit.
             let (sin, cos) = libm::sincosf((k % segments) as f32 / segments as f32 * core::f32::consts::TAU);
@@ -132,7 +132,7 @@ impl Shape {
     }
 
     /// Ball about the origin, half as many rings as segments.
-    pub(super) fn sphere(radius: f32, segments: u32) -> Self {
+    pub(crate) fn sphere(radius: f32, segments: u32) -> Self {
         let rings = segments / 2;
         let profile = (0..=rings).map(|k| {
             let (sin, cos) = sin_cos(180.0 * k as f32 / rings as f32);
@@ -143,7 +143,7 @@ impl Shape {
 
     /// Moulding around the outside of an upright rectangular block of half size `half` (x, z):
     /// `profile` holds (distance outwards, height), from below to above.
-    pub(super) fn moulding(half: Vec2, profile: &[Vec2]) -> Self {
+    pub(crate) fn moulding(half: Vec2, profile: &[Vec2]) -> Self {
         let corners = [(-1.0, 1.0), (1.0, 1.0), (1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0)];
         let ring = |&(x, z): &(f32, f32)| {
             profile.iter().map(|p| Vec3::new(x * (half.x + p.x), p.y, z * (half.y + p.x))).collect()
@@ -153,7 +153,7 @@ impl Shape {
 
     /// Moulding around the inside of a rectangular court of half size `half` (x, z):
     /// `profile` holds (distance into the court, height), from below to above.
-    pub(super) fn inner_moulding(half: Vec2, profile: &[Vec2]) -> Self {
+    pub(crate) fn inner_moulding(half: Vec2, profile: &[Vec2]) -> Self {
         let corners = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0), (1.0, 1.0)];
         let ring = |&(x, z): &(f32, f32)| {
             profile.iter().map(|p| Vec3::new(x * (half.x - p.x), p.y, z * (half.y - p.x))).collect()
@@ -163,7 +163,7 @@ impl Shape {
 
     /// Sheet of no thickness of `columns` × `rows` quadrilaterals: `point` maps (u, v) in `[0, 1]²` to a place,
     /// `size` is its extent in texture coordinates; the top of the texture is at v = 1.
-    pub(super) fn sheet(columns: u32, rows: u32, size: Vec2, point: impl Fn(f32, f32) -> Vec3) -> Self {
+    pub(crate) fn sheet(columns: u32, rows: u32, size: Vec2, point: impl Fn(f32, f32) -> Vec3) -> Self {
         let corner = |i: u32, j: u32| {
             let (u, v) = (i as f32 / columns as f32, j as f32 / rows as f32);
             Corner { position: point(u, v), uv: Vec2::new(u, 1.0 - v) * size }
@@ -178,7 +178,7 @@ impl Shape {
     }
 
     /// Pipe of radius `thickness` along `path`, with open ends.
-    pub(super) fn tube(path: &[Vec3], thickness: f32, segments: u32) -> Self {
+    pub(crate) fn tube(path: &[Vec3], thickness: f32, segments: u32) -> Self {
         let ring = |i: usize| {
             let along = (path[(i + 1).min(path.len() - 1)] - path[i.saturating_sub(1)]).normalize();
             let side = if along.y.abs() < 0.9 { Vec3::Y } else { Vec3::X }.cross(along).normalize();
@@ -194,7 +194,7 @@ impl Shape {
     }
 
     /// Ring about the y axis: a circle of radius `thickness` turned at distance `radius`.
-    pub(super) fn torus(radius: f32, thickness: f32, segments: u32, around: u32) -> Self {
+    pub(crate) fn torus(radius: f32, thickness: f32, segments: u32, around: u32) -> Self {
         let profile: Vec<Vec2> = (0..=around)
             .map(|k| {
                 let turn = (k % around) as f32 / around as f32 * core::f32::consts::TAU;
@@ -219,22 +219,22 @@ fn running_sum(steps: impl Iterator<Item = f32>) -> Vec<f32> {
 
 /// Outline of a moulding or a turned thing, drawn from below to above.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Profile(pub(super) Vec<Vec2>);
+pub(crate) struct Profile(pub(crate) Vec<Vec2>);
 
 impl Profile {
     /// Begins at (`out`, `height`).
-    pub(super) fn from(out: f32, height: f32) -> Self {
+    pub(crate) fn from(out: f32, height: f32) -> Self {
         Self(vec![Vec2::new(out, height)])
     }
 
     /// A straight line to (`out`, `height`).
-    pub(super) fn to(mut self, out: f32, height: f32) -> Self {
+    pub(crate) fn to(mut self, out: f32, height: f32) -> Self {
         self.0.push(Vec2::new(out, height));
         self
     }
 
     /// A half round of the given `radius` that bulges outwards, from (`out`, `height`) upwards.
-    pub(super) fn torus(mut self, out: f32, height: f32, radius: f32, steps: u32) -> Self {
+    pub(crate) fn torus(mut self, out: f32, height: f32, radius: f32, steps: u32) -> Self {
         for k in 0..=steps {
             let (sin, cos) = libm::sincosf((k as f32 / steps as f32 - 0.5) * core::f32::consts::PI);
             self.0.push(Vec2::new(out + radius * cos, height + radius + radius * sin));
@@ -243,7 +243,7 @@ impl Profile {
     }
 
     /// A parabola from the last point towards `control` and on to `end`.
-    pub(super) fn curve(mut self, control: Vec2, end: Vec2, steps: u32) -> Self {
+    pub(crate) fn curve(mut self, control: Vec2, end: Vec2, steps: u32) -> Self {
         let start = self.0[self.0.len() - 1];
         for k in 1..=steps {
             let t = k as f32 / steps as f32;
