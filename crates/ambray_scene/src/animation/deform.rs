@@ -91,7 +91,12 @@ impl Deformer {
             tangent = m.transform_vector3(tangent.truncate()).extend(side);
         }
         Vertex {
-            position: if position.abs().max_element() <= LARGEST_COORDINATE { position } else { Vec3::ZERO },
+            // Number by number: a maximum would pass over what is no number.
+            position: if position.abs().cmple(Vec3::splat(LARGEST_COORDINATE)).all() {
+                position
+            } else {
+                Vec3::ZERO
+            },
             normal: unit(normal, || self.normals.get(i).copied()),
             tangent: unit(tangent.truncate(), || self.tangents.get(i).map(|t| t.truncate()))
                 .extend(tangent.w),
@@ -118,4 +123,92 @@ fn blend(influences: &[Influence], joints: &[Affine3A]) -> Affine3A {
         sum.translation += joint.translation * weight;
     }
     sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn influences<const N: usize>(pairs: [(u32, f32); N]) -> Vec<Influence> {
+        pairs.into_iter().map(|(joint, weight)| Influence { joint, weight }).collect()
+    }
+
+    /// Two vertices with normals and tangents, a target that moves the first along x.
+    fn deformer() -> Deformer {
+        Deformer {
+            positions: vec![Vec3::X, Vec3::Y],
+            normals: vec![Vec3::X, Vec3::Z],
+            tangents: vec![Vec4::new(0.0, 1.0, 0.0, 1.0); 2],
+            targets: vec![MorphTarget { positions: vec![Vec3::X, Vec3::ZERO], ..MorphTarget::default() }],
+            influences: influences([
+                (0, 2.0),
+                (0, 0.0),
+                (0, 0.0),
+                (1, 0.0),
+                (1, 0.0),
+                (0, 0.0),
+                (0, 0.0),
+                (0, 0.0),
+            ]),
+            influences_per_vertex: 4,
+            ..Deformer::default()
+        }
+    }
+
+    #[test]
+    fn weights_move_then_joints_turn() {
+        let deformer = deformer();
+        let joints =
+            [Affine3A::from_rotation_z(std::f32::consts::FRAC_PI_2), Affine3A::from_scale(Vec3::splat(3.0))];
+        let vertex = deformer.vertex(0, &[0.5], &joints);
+        assert!(vertex.position.abs_diff_eq(Vec3::Y * 1.5, 1e-6), "{}", vertex.position);
+        assert!(vertex.normal.abs_diff_eq(Vec3::Y, 1e-6));
+        assert!(vertex.tangent.abs_diff_eq(Vec4::new(-1.0, 0.0, 0.0, 1.0), 1e-6));
+        // No weight at all: the first joint rules.
+        let vertex = deformer.vertex(1, &[0.5], &joints);
+        assert!(vertex.position.abs_diff_eq(Vec3::Y * 3.0, 1e-6));
+        assert_eq!(vertex.normal, Vec3::Z);
+    }
+
+    #[test]
+    fn weights_are_scaled_over_all_sets() {
+        let joints: Vec<Affine3A> = (0..8).map(|i| Affine3A::from_translation(Vec3::X * i as f32)).collect();
+        let sets =
+            influences([(0, 0.25), (1, 0.0), (2, 0.0), (7, 0.25), (4, 0.5), (5, 0.5), (6, 0.5), (3, 0.0)]);
+        let deformer = Deformer {
+            positions: vec![Vec3::Y],
+            influences: sets,
+            influences_per_vertex: 8,
+            ..Deformer::default()
+        };
+        let vertex = deformer.vertex(0, &[], &joints);
+        // (0.25·7 + 0.5·(4 + 5 + 6)) / 2
+        assert!(vertex.position.abs_diff_eq(Vec3::new(4.625, 1.0, 0.0), 1e-6), "{}", vertex.position);
+        assert_eq!((vertex.normal, vertex.tangent), (Vec3::ZERO, Vec4::ZERO), "a mesh without them");
+    }
+
+    #[test]
+    fn mirroring_joints_mirror_the_bitangent() {
+        let deformer = deformer();
+        let joints = [Affine3A::from_scale(Vec3::new(1.0, 1.0, -2.0)); 2];
+        let vertex = deformer.vertex(1, &[0.0], &joints);
+        assert_eq!(vertex.normal, Vec3::NEG_Z);
+        assert_eq!(vertex.tangent, Vec4::new(0.0, 1.0, 0.0, -1.0));
+    }
+
+    #[test]
+    fn what_is_out_of_range_goes_to_the_origin() {
+        let deformer = deformer();
+        for bad in [f32::NAN, f32::INFINITY, 1e13] {
+            let mut joint = Affine3A::IDENTITY;
+            joint.translation.x = bad;
+            let vertex = deformer.vertex(0, &[0.0], &[joint, joint]);
+            assert_eq!(vertex.position, Vec3::ZERO, "{bad}");
+            assert_eq!(vertex.normal, Vec3::X, "{bad}");
+        }
+        let nothing = Affine3A::from_mat3(glam::Mat3::ZERO);
+        let vertex = deformer.vertex(0, &[0.0], &[nothing, nothing]);
+        assert_eq!((vertex.position, vertex.normal), (Vec3::ZERO, Vec3::X));
+        assert_eq!(vertex.tangent.truncate(), Vec3::Y, "the rest where there is no direction");
+    }
 }

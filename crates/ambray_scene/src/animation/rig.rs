@@ -168,3 +168,117 @@ impl Local {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::animation::{Channel, Interpolation, MorphTarget, Property};
+    use glam::{Affine3A, Vec3};
+
+    fn at(translation: DVec3, parent: Option<u32>) -> Node {
+        let local = Local::Trs(Trs { translation, ..Trs::default() });
+        Node { name: String::new(), parent, local, weights: Vec::new() }
+    }
+
+    fn channel(node: u32, property: Property, times: &[f32], values: &[f32]) -> Channel {
+        let interpolation = Interpolation::Linear;
+        Channel { node, property, interpolation, times: times.to_vec(), values: values.to_vec() }
+    }
+
+    /// An arm of two links along x that turns about z in its elbow, a quarter turn in a second; a second clip moves its
+    /// root up by 4 in 2 s.
+    fn arm() -> Rig {
+        let half = std::f32::consts::FRAC_1_SQRT_2;
+        let bend = channel(1, Property::Rotation, &[0.0, 1.0], &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, half, half]);
+        let lift = channel(0, Property::Translation, &[0.0, 2.0], &[0.0, 0.0, 0.0, 0.0, 4.0, 0.0]);
+        Rig {
+            nodes: vec![at(DVec3::ZERO, None), at(DVec3::X, Some(0)), at(DVec3::X, Some(1))],
+            clips: vec![
+                Clip { name: "bend".to_owned(), duration: 1.0, channels: vec![bend] },
+                Clip { name: "lift".to_owned(), duration: 2.0, channels: vec![lift] },
+            ],
+            ..Rig::default()
+        }
+    }
+
+    /// Where the hand is.
+    fn hand(rig: &Rig, moment: Option<Moment>) -> DVec3 {
+        rig.pose(moment.as_ref()).world[2].translation
+    }
+
+    #[test]
+    fn children_follow_their_parents() {
+        let rig = arm();
+        let bent = |time| hand(&rig, Some(Moment { clips: Clips::One(0), time, repeat: false }));
+        assert_eq!(hand(&rig, None), DVec3::X * 2.0);
+        assert!(bent(1.0).abs_diff_eq(DVec3::new(1.0, 1.0, 0.0), 1e-7));
+        let eighth = DVec3::new(1.0 + 0.5_f64.sqrt(), 0.5_f64.sqrt(), 0.0);
+        assert!(bent(0.5).abs_diff_eq(eighth, 1e-7));
+        assert_eq!(bent(7.0), bent(1.0), "the last pose holds");
+    }
+
+    #[test]
+    fn clips_repeat() {
+        let rig = arm();
+        let hand = |clips, time, repeat| hand(&rig, Some(Moment { clips, time, repeat }));
+        assert_eq!(hand(Clips::One(0), 3.25, true), hand(Clips::One(0), 0.25, false));
+        assert_eq!(hand(Clips::One(0), 1.0, true), DVec3::X * 2.0, "the end is the beginning");
+        // All at once, each by its own duration: 1.5 s are half of the bend and three quarters of the lift.
+        let both = hand(Clips::All, 1.5, true);
+        let expected = hand(Clips::One(0), 0.5, false) + DVec3::Y * 3.0;
+        assert!(both.abs_diff_eq(expected, 1e-12), "{both}");
+        assert_eq!((rig.duration(Clips::One(0)), rig.duration(Clips::All)), (1.0, 2.0));
+    }
+
+    #[test]
+    fn a_clip_without_duration_is_a_pose() {
+        let mut rig = arm();
+        rig.clips[1] = Clip {
+            channels: vec![channel(0, Property::Translation, &[0.0], &[0.0, 5.0, 0.0])],
+            ..Clip::default()
+        };
+        for (time, repeat) in [(0.0, true), (3.0, true), (3.0, false)] {
+            let moment = Moment { clips: Clips::One(1), time, repeat };
+            assert_eq!(hand(&rig, Some(moment)), DVec3::new(2.0, 5.0, 0.0));
+        }
+    }
+
+    #[test]
+    fn where_clips_move_the_same_the_last_one_counts() {
+        let mut rig = arm();
+        let away = channel(0, Property::Translation, &[0.0], &[9.0, 0.0, 0.0]);
+        rig.clips.push(Clip { channels: vec![away], ..Clip::default() });
+        let moment = Moment { clips: Clips::All, time: 0.0, repeat: false };
+        assert_eq!(hand(&rig, Some(moment)), DVec3::X * 11.0);
+        assert_eq!(
+            (rig.clip("lift"), rig.clip("2"), rig.clip("3"), rig.clip("walk")),
+            (Some(1), Some(2), None, None)
+        );
+    }
+
+    #[test]
+    fn matrices_stay_and_weights_move() {
+        let mut rig = arm();
+        rig.nodes[1].local = Local::Matrix(DAffine3::from_translation(DVec3::Z));
+        rig.nodes[2].weights = vec![0.5, 0.25];
+        rig.clips[0].channels.push(channel(2, Property::Weights, &[0.0, 1.0], &[0.0, 0.0, 1.0, 3.0]));
+        rig.deformers =
+            vec![Deformer { node: 2, targets: vec![MorphTarget::default(); 2], ..Deformer::default() }];
+        assert_eq!(rig.pose(None).weights, [[0.5, 0.25]]);
+        let pose = rig.pose(Some(&Moment { clips: Clips::One(0), time: 0.5, repeat: true }));
+        assert_eq!(pose.weights, [[0.5, 1.5]]);
+        assert_eq!(pose.world[2].translation, DVec3::new(1.0, 0.0, 1.0));
+    }
+
+    #[test]
+    fn joints_are_world_from_bind_space() {
+        let mut rig = arm();
+        rig.skins = vec![Skin {
+            joints: vec![2, 1],
+            inverse_binds: vec![DAffine3::from_translation(DVec3::NEG_X * 2.0), DAffine3::IDENTITY],
+        }];
+        let joints = &rig.pose(None).joints[0];
+        assert_eq!(joints[0], Affine3A::IDENTITY);
+        assert_eq!(joints[1], Affine3A::from_translation(Vec3::X));
+    }
+}

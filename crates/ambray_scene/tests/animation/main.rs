@@ -4,3 +4,5 @@
 mod common;
 
 mod at_rest;
+mod poses;
+mod reference;
