@@ -1,6 +1,7 @@
 //! The command line as it was typed: parsed and checked for form, without side effects.
 
 mod backend;
+mod sequence;
 
 use std::{any::TypeId, ffi::OsString, fmt::Display, path::PathBuf, str::FromStr};
 
@@ -14,6 +15,7 @@ use clap::{
 };
 
 pub use backend::{Backend, BackendArgs, DeviceArgs, Grouping, GroupingArgs, Trace};
+pub use sequence::{Frames, Rate, SequenceArgs};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -128,7 +130,8 @@ pub struct RenderArgs {
     /// The scene.
     #[command(flatten)]
     pub scene: SceneArgs,
-    /// Picture to write, .png or .exr; - is stdout [default: ambray.png, or ambray.exr with --format exr]
+    /// Picture to write, .png or .exr; - is stdout [default: ambray.png, or ambray.exr with --format exr]. Of a sequence
+    /// (--frames), a run of # in the name is the number of the frame [default: ambray_####.png]
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
     /// File format [default: by the extension of OUT; png8 for .png]
@@ -138,9 +141,12 @@ pub struct RenderArgs {
     /// OUT-stem.PLANE.png in PNG
     #[arg(long, value_name = "PLANES", value_delimiter = ',', value_parser = planes())]
     pub aov: Vec<Planes>,
-    /// Print the report as one JSON object on stdout
+    /// Print the report as one JSON object on stdout; of a sequence, with a list of all frames
     #[arg(long)]
     pub json: bool,
+    /// Which frames.
+    #[command(flatten)]
+    pub sequence: SequenceArgs,
     /// How to run.
     #[command(flatten)]
     pub run: RunArgs,

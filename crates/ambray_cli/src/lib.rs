@@ -16,6 +16,7 @@ pub mod scene_source;
 pub mod settings_file;
 pub mod signals;
 pub mod terminal;
+pub mod timeline;
 pub mod usage;
 
 use std::{ffi::OsString, process::ExitCode};

@@ -28,6 +28,13 @@ impl Progress {
         Self { bar, start: Instant::now() }
     }
 
+    /// Names the part of the work that is under way.
+    pub fn say(&self, what: String) {
+        if self.start.elapsed() > SHORT {
+            self.bar.set_message(what);
+        }
+    }
+
     /// Shows that `share` of the work is done, in `[0, 1]`.
     pub fn report(&self, share: f32) {
         if self.start.elapsed() > SHORT {

@@ -2,6 +2,8 @@
 
 mod acceleration;
 mod backend;
+mod sequence;
+mod spread;
 
 use std::{fmt::Write as _, time::Duration};
 
@@ -11,7 +13,12 @@ use ambray::{
 };
 use serde::Serialize;
 
-pub use self::{acceleration::AccelerationReport, backend::BackendReport};
+pub use self::{
+    acceleration::AccelerationReport,
+    backend::BackendReport,
+    sequence::{FrameReport, SequenceReport, Tally},
+    spread::{Spread, quantile},
+};
 use crate::scene_source::Source;
 
 /// Milliseconds to a thousandth.

@@ -2,7 +2,7 @@
 
 use std::{
     path::Path,
-    time::{Duration, Instant},
+    time::{Duration, Instant, SystemTime},
 };
 
 use ambray::scene::{LoadOptions, Scene, SceneChoice, load_with};
@@ -20,6 +20,10 @@ pub struct Source {
     pub scene: Scene,
     /// Path of the file, or `atrium`.
     pub path: String,
+    /// What pictures say they show: the path, with the scene within the file if one was asked for.
+    pub label: String,
+    /// When the file was changed last, if the system tells.
+    pub modified: Option<SystemTime>,
     /// What the loader had to say.
     pub warnings: Vec<String>,
     /// Wall time to load it.
@@ -48,7 +52,15 @@ pub fn open(path: &Path, gltf_scene: Option<&str>) -> anyhow::Result<Source> {
     for warning in &warnings {
         terminal::warn(&format!("{}: {warning}", path.display()));
     }
-    Ok(Source { scene, path: path.display().to_string(), warnings, load_time: start.elapsed() })
+    let name = path.display().to_string();
+    Ok(Source {
+        scene,
+        label: gltf_scene.map_or_else(|| name.clone(), |scene| format!("{name}, scene {scene}")),
+        path: name,
+        modified: path.metadata().and_then(|metadata| metadata.modified()).ok().filter(|_| !built_in),
+        warnings,
+        load_time: start.elapsed(),
+    })
 }
 
 fn choice(name: &str) -> SceneChoice {

@@ -1,25 +1,19 @@
 //! Settings from files, and how defaults, preset, file and flags join.
 
-use std::{
-    fs,
-    io::{Cursor, Read as _},
-    path::Path,
-};
+use std::{fs, io::Read as _, path::Path};
 
 use ambray::settings::{Preset, Settings, SettingsPatch};
-use anyhow::{Context as _, anyhow};
+use anyhow::{Context as _, anyhow, bail};
 use serde::Deserialize;
 use toml::de::DeTable;
 
-use crate::{args::SettingsArgs, failure::Problems, output::exr::SETTINGS_ATTRIBUTE};
+use crate::{args::SettingsArgs, failure::Problems, output::head::Head};
 
 /// Larger settings files are refused.
 const LARGEST_FILE: u64 = 1 << 20;
 const NO_SETTINGS: &str = "the picture holds no settings of ambray";
 /// Keyword of the text in a PNG picture that holds its settings.
 pub const PNG_KEYWORD: &str = "ambray:settings";
-const PNG_SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
-const EXR_SIGNATURE: &[u8] = b"\x76\x2f\x31\x01";
 
 /// What a settings file holds.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -119,15 +113,9 @@ fn line_of(text: &str, offset: usize) -> usize {
 /// Reads a settings file, or the settings in a picture.
 pub fn read(path: &Path) -> anyhow::Result<SettingsFile> {
     let context = || format!("settings file {}", path.display());
-    let file = fs::File::open(path).with_context(context)?;
-    let mut head = [0; PNG_SIGNATURE.len()];
-    let is_whole = (&file).read_exact(&mut head).is_ok();
-    let text = if is_whole && head == *PNG_SIGNATURE {
-        text_of_png(path).with_context(context)?
-    } else if is_whole && head.starts_with(EXR_SIGNATURE) {
-        text_of_exr(path).with_context(context)?
-    } else {
-        text_of_file(path)?
+    let text = match Head::read(path).with_context(context)? {
+        Some(head) => head.settings.context(NO_SETTINGS).with_context(context)?,
+        None => text_of_file(path).with_context(context)?,
     };
     parse(&text).map_err(|problems| {
         let told = |problem: &Problem| format!("{}:{}: {}", path.display(), problem.line, problem.message);
@@ -136,40 +124,12 @@ pub fn read(path: &Path) -> anyhow::Result<SettingsFile> {
 }
 
 fn text_of_file(path: &Path) -> anyhow::Result<String> {
-    let context = || format!("settings file {}", path.display());
     let mut bytes = Vec::new();
-    fs::File::open(path)
-        .and_then(|file| file.take(LARGEST_FILE + 1).read_to_end(&mut bytes))
-        .with_context(context)?;
+    fs::File::open(path)?.take(LARGEST_FILE + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > LARGEST_FILE {
-        return Err(anyhow!("larger than {LARGEST_FILE} bytes")).with_context(context);
+        bail!("larger than {LARGEST_FILE} bytes");
     }
-    String::from_utf8(bytes)
-        .map_err(|_| anyhow!("neither UTF-8 text nor a PNG or OpenEXR picture"))
-        .with_context(context)
-}
-
-fn text_of_png(path: &Path) -> anyhow::Result<String> {
-    let mut bytes = Vec::new();
-    // The settings stand before the pixels, so the head of the file is enough.
-    fs::File::open(path)?.take(LARGEST_FILE).read_to_end(&mut bytes)?;
-    let reader = png::Decoder::new(Cursor::new(bytes)).read_info()?;
-    let texts = &reader.info().utf8_text;
-    let chunk = texts.iter().find(|chunk| chunk.keyword == PNG_KEYWORD);
-    Ok(chunk.context(NO_SETTINGS)?.get_text()?)
-}
-
-fn text_of_exr(path: &Path) -> anyhow::Result<String> {
-    let head = fs::File::open(path)?.take(LARGEST_FILE);
-    let headers = exr::meta::MetaData::read_from_unbuffered(head, false)?.headers;
-    let name = exr::prelude::Text::from(SETTINGS_ATTRIBUTE);
-    let settings = headers.first().and_then(|header| header.own_attributes.other.get(&name));
-    match settings {
-        Some(exr::prelude::AttributeValue::Text(settings)) => {
-            String::from_utf8(settings.as_slice().to_vec()).context("the settings are not UTF-8 text")
-        }
-        _ => Err(anyhow!(NO_SETTINGS)),
-    }
+    String::from_utf8(bytes).map_err(|_| anyhow!("neither UTF-8 text nor a PNG or OpenEXR picture"))
 }
 
 /// The settings as a file that [`parse`] reads back.

@@ -11,7 +11,7 @@ use anyhow::bail;
 use serde::Serialize;
 
 use super::{
-    check_memory, control,
+    check_animation, check_memory, control,
     cost::CostReport,
     explained, renderer,
     thin_cost::{self, ThinCost},
@@ -22,8 +22,8 @@ use crate::{
     output::atomic::{Batch, Target},
     progress::Progress,
     report::{
-        self, AccelerationReport, BackendReport, BuildReport, RayReport, SceneReport, StageReport,
-        ViewReport, milliseconds,
+        self, AccelerationReport, BackendReport, BuildReport, RayReport, SceneReport, Spread, StageReport,
+        ViewReport, quantile,
     },
     scene_source, settings_file, signals, terminal,
 };
@@ -56,16 +56,6 @@ struct SceneBench {
     cost: CostReport,
     /// With `--thin-cost`; the rest is of the frame without thin detection then.
     thin_cost: Option<Vec<ThinCost>>,
-}
-
-/// Distribution of the time of a frame, milliseconds.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-struct Spread {
-    median: f64,
-    p95: f64,
-    min: f64,
-    max: f64,
-    mean: f64,
 }
 
 /// Measures the scenes.
@@ -125,6 +115,7 @@ fn measure(
     options: &RendererOptions,
 ) -> anyhow::Result<(SceneBench, usize)> {
     let source = scene_source::open(path, args.gltf_scene.as_deref())?;
+    check_animation(settings, &source)?;
     let scene = SceneReport::of(&source);
     let mut renderer = renderer(source.scene, options, &args.run)?;
     let backend = BackendReport::of(&renderer);
@@ -205,26 +196,6 @@ impl Measured {
     }
 }
 
-impl Spread {
-    /// Of `times` in ascending order.
-    fn of(times: &[Duration]) -> Self {
-        let mean = times.iter().sum::<Duration>().div_f64(times.len() as f64);
-        Self {
-            median: milliseconds(quantile(times, 0.5)),
-            p95: milliseconds(quantile(times, 0.95)),
-            min: milliseconds(quantile(times, 0.0)),
-            max: milliseconds(quantile(times, 1.0)),
-            mean: milliseconds(mean),
-        }
-    }
-}
-
-/// The smallest value that is not below the share `q` of the ascending `values`: nearest rank.
-fn quantile<T: Copy>(values: &[T], q: f64) -> T {
-    let rank = (q * values.len() as f64).ceil() as usize;
-    values[rank.saturating_sub(1).min(values.len() - 1)]
-}
-
 fn medians(stages: &[StageReport]) -> StageReport {
     let median = |stage: fn(&StageReport) -> f64| {
         let mut times: Vec<f64> = stages.iter().map(stage).collect();
@@ -260,17 +231,5 @@ impl SceneBench {
             text.push_str(&thin_cost::table(costs, settings.size));
         }
         text
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn quantiles_are_of_nearest_rank() {
-        let values: Vec<u32> = (1..=100).collect();
-        assert_eq!([0.0, 0.5, 0.95, 1.0].map(|q| quantile(&values, q)), [1, 50, 95, 100]);
-        assert_eq!(quantile(&[7], 0.95), 7);
     }
 }

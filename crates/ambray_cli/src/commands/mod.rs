@@ -7,12 +7,19 @@ pub mod documents;
 pub mod info;
 pub mod query;
 pub mod render;
+mod sequence;
 mod thin_cost;
 
-use ambray::{Control, RenderError, Renderer, RendererOptions, scene::Scene, settings::Size};
+use ambray::{
+    Control, RenderError, Renderer, RendererOptions,
+    scene::Scene,
+    settings::{Settings, Size},
+};
 use anyhow::bail;
 
-use crate::{args::RunArgs, failure::Problems, machine, progress::Progress, report, signals};
+use crate::{
+    args::RunArgs, failure::Problems, machine, progress::Progress, report, scene_source::Source, signals,
+};
 
 /// Control of long work: Ctrl-C, threads and a progress bar.
 fn control<'a>(run: &RunArgs, progress: &'a (dyn Fn(f32) + Sync)) -> Control<'a> {
@@ -41,6 +48,17 @@ fn check_memory(size: Size, extra: u64) -> anyhow::Result<()> {
     }
 }
 
+/// Refuses settings that ask for a moment of an animation where there is none.
+fn check_animation(settings: &Settings, source: &Source) -> anyhow::Result<()> {
+    let asked = match (settings.animation.value(), settings.time.value()) {
+        _ if source.scene.rig.is_some() => return Ok(()),
+        (Some(name), _) => format!("--animation {name}"),
+        (None, Some(time)) => format!("--time {time}"),
+        (None, None) => return Ok(()),
+    };
+    bail!("{asked} is not allowed: {} has no animation", source.path)
+}
+
 /// The renderer's errors in the terms of the program.
 fn explained(error: RenderError) -> anyhow::Error {
     match error {
@@ -49,7 +67,9 @@ fn explained(error: RenderError) -> anyhow::Error {
             Problems(problems.iter().map(|p| format!("--{p}")).collect()).into()
         }
         // The messages begin with the name of the setting.
-        RenderError::UnknownCamera { .. } | RenderError::Camera(_) => anyhow::anyhow!("--{error}"),
+        RenderError::UnknownCamera { .. } | RenderError::UnknownAnimation { .. } | RenderError::Camera(_) => {
+            anyhow::anyhow!("--{error}")
+        }
         other => other.into(),
     }
 }

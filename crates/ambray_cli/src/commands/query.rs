@@ -10,7 +10,7 @@ use std::{
 use ambray::{QueryPoint, RenderError, Renderer, settings::Settings};
 use anyhow::{Context as _, anyhow, bail};
 
-use super::{control, explained, renderer};
+use super::{check_animation, control, explained, renderer};
 use crate::{
     args::{Grouping, QueryArgs},
     output::atomic::{Batch, Target},
@@ -43,6 +43,7 @@ pub fn run(args: &QueryArgs) -> anyhow::Result<()> {
     let reader = Reader::new(input, name, args.points_format);
 
     let source = scene_source::open(&args.scene.scene, args.scene.gltf_scene.as_deref())?;
+    check_animation(&settings, &source)?;
     let mut renderer = renderer(source.scene, &options, &args.run)?;
     let mut job =
         Job { args, settings: &settings, renderer: &mut renderer, reader, length, done: Done::default() };

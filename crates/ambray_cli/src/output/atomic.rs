@@ -45,6 +45,12 @@ impl Target {
         check_file(path).with_context(|| format!("output {}", path.display()))
     }
 
+    /// As [`check`](Self::check), apart from the folder: fit for thousands of files of one folder.
+    pub fn check_name(&self) -> anyhow::Result<()> {
+        let Self::File(path) = self else { return Ok(()) };
+        check_name(path).map(drop).with_context(|| format!("output {}", path.display()))
+    }
+
     /// Refuses to write bytes that are no text to a terminal.
     pub fn check_binary(&self) -> anyhow::Result<()> {
         if *self == Self::Stdout && std::io::stdout().is_terminal() {
@@ -55,15 +61,31 @@ impl Target {
 }
 
 fn check_file(path: &Path) -> anyhow::Result<()> {
-    let metadata = fs::metadata(path).ok();
-    match metadata {
+    match check_name(path)? {
+        Place::Device => Ok(()),
+        Place::File => check_folder(folder_of(path)),
+    }
+}
+
+/// What is to be written to.
+enum Place {
+    File,
+    Device,
+}
+
+/// Whether there may be a file at `path`, apart from its folder.
+fn check_name(path: &Path) -> anyhow::Result<Place> {
+    match fs::metadata(path).ok() {
         Some(metadata) if metadata.is_dir() => bail!("is a folder, not a file"),
         Some(metadata) if metadata.permissions().readonly() => bail!("the file exists and is read-only"),
-        Some(metadata) if !metadata.is_file() => return Ok(()),
+        Some(metadata) if !metadata.is_file() => Ok(Place::Device),
         _ if path.file_name().is_none() => bail!("not the name of a file"),
-        _ => {}
+        _ => Ok(Place::File),
     }
-    let folder = folder_of(path);
+}
+
+/// Whether files can be made in `folder`.
+pub(super) fn check_folder(folder: &Path) -> anyhow::Result<()> {
     if !folder.is_dir() {
         let missing = anyhow::anyhow!("the folder {} does not exist", folder.display());
         return Err(with_hint(missing, "create the folder first"));
@@ -81,7 +103,8 @@ fn reason(error: &std::io::Error) -> String {
     text.split(" at path ").next().unwrap_or(&text).to_owned()
 }
 
-fn folder_of(path: &Path) -> &Path {
+/// The folder that `path` lies in.
+pub(super) fn folder_of(path: &Path) -> &Path {
     match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),

@@ -6,7 +6,7 @@ use exr::prelude::{
     LayerAttributes, LineOrder, SmallVec, Text, WritableImage as _, attribute::Matrix4x4,
 };
 
-use super::atomic::Output;
+use super::{atomic::Output, head::SOFTWARE};
 use crate::report::CameraReport;
 
 /// Attribute that holds the settings as TOML.
@@ -22,7 +22,7 @@ pub fn write(
 ) -> anyhow::Result<()> {
     let size = (frame.width as usize, frame.height as usize);
     let mut channels = SmallVec::new();
-    for aov in std::iter::once(Aov::Beauty).chain(planes.iter().copied().filter(|aov| *aov != Aov::Beauty)) {
+    for aov in with_picture(planes) {
         channels.extend(layer(frame, aov));
     }
     let encoding = Encoding {
@@ -35,12 +35,30 @@ pub fn write(
     Ok(image.write().to_buffered(output)?)
 }
 
+/// Names of the channels of a file with `planes` besides the picture, in its order.
+#[must_use]
+pub fn channel_names(planes: &[Aov]) -> Vec<String> {
+    let mut names: Vec<_> = with_picture(planes).flat_map(names).collect();
+    names.sort();
+    names
+}
+
+fn with_picture(planes: &[Aov]) -> impl Iterator<Item = Aov> {
+    std::iter::once(Aov::Beauty).chain(planes.iter().copied().filter(|aov| *aov != Aov::Beauty))
+}
+
+fn names(aov: Aov) -> impl Iterator<Item = String> {
+    let name = move |channel: &&str| {
+        if aov == Aov::Beauty { (*channel).to_owned() } else { format!("{aov}.{channel}") }
+    };
+    aov.channels().iter().map(name)
+}
+
 fn layer(frame: &Frame, aov: Aov) -> impl Iterator<Item = AnyChannel<FlatSamples>> {
     let values = frame.plane(aov);
-    let names = aov.channels();
-    names.iter().enumerate().map(move |(i, channel)| {
-        let name = if aov == Aov::Beauty { (*channel).to_owned() } else { format!("{aov}.{channel}") };
-        let samples = values.iter().skip(i).step_by(names.len()).copied().collect();
+    let count = aov.channels().len();
+    names(aov).enumerate().map(move |(i, name)| {
+        let samples = values.iter().skip(i).step_by(count).copied().collect();
         AnyChannel::new(name.as_str(), FlatSamples::F32(samples))
     })
 }
@@ -55,7 +73,7 @@ fn attributes(frame: &Frame, settings: &str, scene: &str) -> LayerAttributes {
     // exr keeps other attributes in no particular order: a second one would make the bytes of the file random.
     let other = [(Text::from(SETTINGS_ATTRIBUTE), AttributeValue::Text(utf8(settings)))];
     LayerAttributes {
-        software_name: Some(Text::from(concat!("ambray ", env!("CARGO_PKG_VERSION")))),
+        software_name: Some(Text::from(SOFTWARE)),
         comments: Some(utf8(scene)),
         world_to_camera: Some(world_to_camera(&camera)),
         vertical_field_of_view: vertical,

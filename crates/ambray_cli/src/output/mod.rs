@@ -3,16 +3,23 @@
 pub mod atomic;
 pub mod exr;
 pub mod false_colour;
+pub mod folder;
+pub mod head;
+pub mod numbering;
 pub mod png;
 pub mod tone_map;
 
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    time::SystemTime,
+};
 
 use ambray::{Aov, Frame, settings::Settings};
 use anyhow::{anyhow, bail};
 
 use self::{
     atomic::{Batch, Target},
+    head::{Head, SCENE_KEYWORD, SOFTWARE},
     png::Bits,
 };
 use crate::{
@@ -33,17 +40,19 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Decides the format by option and extension, and checks that the files can be written.
-    pub fn new(output: Option<&Path>, format: Option<Format>, planes: &[Planes]) -> anyhow::Result<Self> {
-        let default = match format {
-            Some(Format::Exr) => Path::new("ambray.exr"),
-            _ => Path::new("ambray.png"),
-        };
-        let main = Target::of(output.unwrap_or(default));
+    /// Decides the format by option and extension; without an output, the file has the stem `default`.
+    pub fn new(
+        output: Option<&Path>,
+        default: &str,
+        format: Option<Format>,
+        planes: &[Planes],
+    ) -> anyhow::Result<Self> {
+        let default = Path::new(default).with_extension(format.unwrap_or(Format::Png8).extension());
+        let main = Target::of(output.unwrap_or(&default));
         if let Target::File(path) = &main
             && path.is_dir()
         {
-            let inside = path.join(default);
+            let inside = path.join(&default);
             let folder = anyhow!("output {}: is a folder, not a file", path.display());
             return Err(with_hint(folder, format!("to write into it: -o {}", inside.display())));
         }
@@ -54,9 +63,19 @@ impl Plan {
                 "--format exr puts all planes into one file",
             ));
         }
-        plan.main.check_binary()?;
-        plan.files().iter().try_for_each(|(target, _)| target.check())?;
         Ok(plan)
+    }
+
+    /// Checks that the files can be written.
+    pub fn check(&self) -> anyhow::Result<()> {
+        self.main.check_binary()?;
+        self.files().iter().try_for_each(|(target, _)| target.check())
+    }
+
+    /// The same with the picture at `path`.
+    #[must_use]
+    pub fn at(&self, path: PathBuf) -> Self {
+        Self { main: Target::File(path), ..self.clone() }
     }
 
     /// The files with their planes.
@@ -77,6 +96,21 @@ impl Plan {
         if self.format == Format::Exr { 8 * (3 + channels as u64) } else { 32 }
     }
 
+    /// Whether all files are there already, made by this version with these settings of this `scene`, and not before
+    /// `since`.
+    #[must_use]
+    pub fn is_made(&self, settings: &Settings, scene: &str, since: Option<SystemTime>) -> bool {
+        let toml = settings_file::write(settings);
+        self.files().iter().all(|(target, _)| match target {
+            Target::Stdout => false,
+            Target::File(path) => {
+                let written = path.metadata().and_then(|metadata| metadata.modified()).ok();
+                let is_fresh = since.is_none() || written >= since;
+                is_fresh && is_made(path, &self.planes, self.format, &toml, scene)
+            }
+        })
+    }
+
     /// Writes the files of `frame` to `batch`.
     pub fn write(
         &self,
@@ -93,9 +127,8 @@ impl Plan {
             Format::Png8 => Bits::Eight,
             Format::Png16 => Bits::Sixteen,
         };
-        let software = concat!("ambray ", env!("CARGO_PKG_VERSION"));
         let texts =
-            [("Software", software), ("ambray:scene", scene), (settings_file::PNG_KEYWORD, toml.as_str())];
+            [("Software", SOFTWARE), (SCENE_KEYWORD, scene), (settings_file::PNG_KEYWORD, toml.as_str())];
         for (target, aov) in self.files() {
             let picture = false_colour::show(frame, aov, settings);
             let size = (frame.width, frame.height);
@@ -104,6 +137,20 @@ impl Plan {
         }
         Ok(())
     }
+}
+
+/// Whether the file at `path` is what [`Plan::write`] would write, as far as its head tells.
+fn is_made(path: &Path, planes: &[Aov], format: Format, settings: &str, scene: &str) -> bool {
+    let Ok(Some(head)) = Head::read(path) else { return false };
+    let channels = if format == Format::Exr { exr::channel_names(planes) } else { Vec::new() };
+    let expected = Head {
+        format,
+        software: Some(SOFTWARE.to_owned()),
+        scene: Some(scene.to_owned()),
+        settings: Some(settings.to_owned()),
+        channels,
+    };
+    head == expected
 }
 
 fn decide_format(target: &Target, format: Option<Format>) -> anyhow::Result<Format> {

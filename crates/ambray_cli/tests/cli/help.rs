@@ -40,6 +40,7 @@ fn samples(arg: &clap::Arg) -> Vec<String> {
         "WIDTHxHEIGHT" => "64x36",
         "R,G,B" | "X,Y,Z" => "0.5,1,0.25",
         "PLANES" => "depth,all",
+        "A..B" => "0..9",
         _ => "1",
     };
     vec![sample.to_owned()]

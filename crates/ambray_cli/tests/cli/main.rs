@@ -1,6 +1,7 @@
 //! Runs the `ambray` program as a user would.
 #![forbid(unsafe_code)]
 
+mod animated;
 mod backend;
 mod bench_and_info;
 mod help;
@@ -8,6 +9,7 @@ mod interrupt;
 mod options;
 mod outputs;
 mod query;
+mod sequence;
 
 use std::{
     fs,

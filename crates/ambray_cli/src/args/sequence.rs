@@ -1,0 +1,263 @@
+//! Options of sequences: which frames, how fast, which of them are made again.
+
+use std::{fmt, str::FromStr};
+
+use clap::Args;
+
+const HEADING: &str = "Sequence";
+
+/// What was expected of `--frames`.
+const FRAMES: &str = "A..B (B is not shown), A..=B, either with :STEP, or one number, such as 0..120";
+const EMPTY: &str = "there is no frame in it, the end must be larger than the start";
+/// Most frames of a sequence.
+const MOST: usize = 1_000_000;
+/// What was expected of `--fps`.
+const RATE: &str = "frames a second from 0.001 to 1000, such as 30, 23.976 or 30000/1001";
+
+/// A sequence of frames.
+#[derive(Clone, Debug, Args)]
+pub struct SequenceArgs {
+    /// Render a sequence: frames A to B-1, with ..= to B, with :STEP every so many; OUT holds a run of # for the number.
+    /// Frame k shows the time k/fps after that of --time
+    #[arg(long, value_name = "A..B", help_heading = HEADING)]
+    pub frames: Option<Frames>,
+    /// Frames a second, a number or a fraction such as 30000/1001 [default: 30]
+    #[arg(long, value_name = "RATE", help_heading = HEADING)]
+    pub fps: Option<Rate>,
+    /// Keep frames whose files are there already, made by the same version with the same settings of the same scene
+    #[arg(long, help_heading = HEADING)]
+    pub resume: bool,
+}
+
+impl SequenceArgs {
+    /// The first option that means nothing for a single picture.
+    #[must_use]
+    pub fn needs_frames(&self) -> Option<&'static str> {
+        let fps = self.fps.map(|_| "--fps");
+        fps.or_else(|| self.resume.then_some("--resume"))
+    }
+}
+
+/// Numbers of the frames of a sequence: at least one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Frames {
+    first: u32,
+    last: u32,
+    step: u32,
+}
+
+impl Frames {
+    /// The first `count` frames, at least one.
+    #[must_use]
+    pub fn first(count: u32) -> Self {
+        Self { first: 0, last: count.max(1) - 1, step: 1 }
+    }
+
+    /// The numbers in ascending order.
+    pub fn numbers(&self) -> impl Iterator<Item = u32> + use<> {
+        (self.first..=self.last).step_by(self.step as usize)
+    }
+
+    /// How many there are.
+    #[must_use]
+    pub const fn count(&self) -> usize {
+        ((self.last - self.first) / self.step) as usize + 1
+    }
+
+    /// The smallest number.
+    #[must_use]
+    pub const fn start(&self) -> u32 {
+        self.first
+    }
+
+    /// The largest number, which [`Self::numbers`] may step over.
+    #[must_use]
+    pub const fn end(&self) -> u32 {
+        self.last
+    }
+
+    /// From one number to the next.
+    #[must_use]
+    pub const fn step(&self) -> u32 {
+        self.step
+    }
+}
+
+impl FromStr for Frames {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let number = |text: &str| text.parse::<u32>().map_err(|_| FRAMES.to_owned());
+        let (range, step) = match text.split_once(':') {
+            Some((range, step)) => (range, number(step)?),
+            None => (text, 1),
+        };
+        let (first, last) = match (range.split_once("..="), range.split_once("..")) {
+            (Some((first, last)), _) => (number(first)?, Some(number(last)?)),
+            (None, Some((first, end))) => (number(first)?, number(end)?.checked_sub(1)),
+            (None, None) => (number(range)?, Some(number(range)?)),
+        };
+        match last.map(|last| Self { first, last, step }) {
+            _ if step == 0 => Err("the step must be at least 1".to_owned()),
+            Some(frames) if frames.last < first => Err(EMPTY.to_owned()),
+            Some(frames) if frames.count() > MOST => Err(format!("more than {MOST} frames")),
+            Some(frames) => Ok(frames),
+            None => Err(EMPTY.to_owned()),
+        }
+    }
+}
+
+impl fmt::Display for Frames {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.first == self.last {
+            return self.first.fmt(f);
+        }
+        write!(f, "{}..={}", self.first, self.last)?;
+        if self.step == 1 { Ok(()) } else { write!(f, ":{}", self.step) }
+    }
+}
+
+/// Frames a second as an exact fraction, which broadcast rates such as 30000/1001 need.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rate {
+    frames: u64,
+    seconds: u64,
+}
+
+impl Rate {
+    /// When frame `number` is shown, seconds after frame 0: rounded once, so that long sequences do not drift.
+    #[must_use]
+    pub fn time(&self, number: u32) -> f64 {
+        (u64::from(number) * self.seconds) as f64 / self.frames as f64
+    }
+
+    /// How many frames show `seconds`, rounded to the nearest; at least one.
+    #[must_use]
+    pub fn frames_in(&self, seconds: f64) -> u32 {
+        (seconds * self.per_second()).round().clamp(1.0, f64::from(u32::MAX)) as u32
+    }
+
+    /// Frames a second.
+    #[must_use]
+    pub fn per_second(&self) -> f64 {
+        self.frames as f64 / self.seconds as f64
+    }
+
+    /// Frames in so many seconds, the smallest numbers that say it.
+    #[must_use]
+    pub const fn fraction(&self) -> (u64, u64) {
+        (self.frames, self.seconds)
+    }
+}
+
+impl Default for Rate {
+    fn default() -> Self {
+        Self { frames: 30, seconds: 1 }
+    }
+}
+
+impl FromStr for Rate {
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> Result<Self, &'static str> {
+        let fraction = match text.split_once('/') {
+            Some((frames, seconds)) => digits(frames).zip(digits(seconds)),
+            None => decimal(text),
+        };
+        let (frames, seconds) = fraction.filter(|&(_, seconds)| seconds > 0).ok_or(RATE)?;
+        let divisor = common_divisor(frames, seconds);
+        let rate = Self { frames: frames / divisor, seconds: seconds / divisor };
+        if (0.001..=1000.0).contains(&rate.per_second()) { Ok(rate) } else { Err(RATE) }
+    }
+}
+
+impl fmt::Display for Rate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // Factors of ten in the denominator come from decimals.
+        if 1_000_000 % self.seconds == 0 {
+            self.per_second().fmt(f)
+        } else {
+            write!(f, "{}/{}", self.frames, self.seconds)
+        }
+    }
+}
+
+/// A whole number small enough that products with a number of a frame fit 64 bits.
+fn digits(text: &str) -> Option<u64> {
+    let is_plain = (1..=9).contains(&text.len()) && text.bytes().all(|byte| byte.is_ascii_digit());
+    text.parse().ok().filter(|_| is_plain)
+}
+
+/// A decimal number as a fraction of whole numbers.
+fn decimal(text: &str) -> Option<(u64, u64)> {
+    let (whole, places) = text.split_once('.').unwrap_or((text, "0"));
+    let (whole, scale) = (digits(whole)?, 10_u64.pow(places.len().min(7) as u32));
+    (places.len() <= 6).then_some((whole.checked_mul(scale)? + digits(places)?, scale))
+}
+
+const fn common_divisor(mut a: u64, mut b: u64) -> u64 {
+    while b != 0 {
+        (a, b) = (b, a % b);
+    }
+    a
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_are_counted_as_ranges_are() {
+        let numbers =
+            |text: &str| text.parse::<Frames>().map(|frames| frames.numbers().collect::<Vec<_>>()).unwrap();
+        assert_eq!(numbers("0..3"), [0, 1, 2]);
+        assert_eq!(numbers("5..=7"), [5, 6, 7]);
+        assert_eq!(numbers("7"), [7]);
+        assert_eq!(numbers("0..=10:5"), [0, 5, 10]);
+        assert_eq!(numbers("0..10:5"), [0, 5]);
+        assert_eq!(numbers("1..11:5"), [1, 6]);
+        for text in ["0..3", "5..=7", "7", "0..=10:5", "0..10:5", "1..11:5", "0..4294967295:4300"] {
+            let frames: Frames = text.parse().unwrap();
+            assert_eq!(frames.count(), frames.numbers().size_hint().0, "{text}");
+        }
+        assert_eq!("0..120".parse::<Frames>().unwrap().to_string(), "0..=119");
+        assert_eq!("7".parse::<Frames>().unwrap().to_string(), "7");
+        assert_eq!("0..=9:3".parse::<Frames>().unwrap().to_string(), "0..=9:3");
+    }
+
+    #[test]
+    fn what_is_no_range_is_refused() {
+        for text in ["", "a", "1..", "..3", "0-3", "-1..3", "0..3:", "0..=4294967296", "0.5", "1...3"] {
+            assert!(text.parse::<Frames>().unwrap_err().starts_with("A..B"), "{text}");
+        }
+        for text in ["0..0", "3..3", "4..=3"] {
+            assert!(text.parse::<Frames>().unwrap_err().starts_with("there is no frame"), "{text}");
+        }
+        assert!("0..2000000".parse::<Frames>().unwrap_err().contains("more than 1000000"));
+        assert!("0..3:0".parse::<Frames>().unwrap_err().contains("step"));
+    }
+
+    #[test]
+    fn rates_are_exact() {
+        let rate = |text: &str| text.parse::<Rate>().unwrap();
+        assert_eq!(rate("30").fraction(), (30, 1));
+        assert_eq!(rate("23.976").fraction(), (2997, 125));
+        assert_eq!(rate("30000/1001").fraction(), (30000, 1001));
+        assert_eq!(rate("60/2"), rate("30.0"));
+        assert_eq!(
+            ["30", "23.976", "30000/1001", "0.5"].map(|text| rate(text).to_string()),
+            ["30", "23.976", "30000/1001", "0.5"]
+        );
+        assert_eq!(rate("25").time(50), 2.0);
+        assert_eq!(rate("30000/1001").time(30000), 1001.0);
+        assert_eq!((rate("30").frames_in(1.99), rate("30").frames_in(0.0)), (60, 1));
+    }
+
+    #[test]
+    fn what_is_no_rate_is_refused() {
+        for text in ["", "0", "-30", "1001", "0.0001", "1/0", "30/", "nan", "inf", "1e3", "1.0000001", "30 "]
+        {
+            assert_eq!(text.parse::<Rate>(), Err(RATE), "{text}");
+        }
+    }
+}
