@@ -1,4 +1,4 @@
-//! Small damage to good files, thousands of times: whatever comes of it, no panic and no broken mesh.
+//! Small damage to good files, thousands of times: whatever comes of it, no panic and no broken mesh, at rest and moved.
 
 mod common;
 
@@ -13,6 +13,8 @@ const FILES: &[&str] = &[
     "BoxInterleaved/glTF-Binary/BoxInterleaved.glb",
     "RiggedSimple/glTF-Binary/RiggedSimple.glb",
     "SimpleInstancing/glTF-Binary/SimpleInstancing.glb",
+    "BoxAnimated/glTF-Binary/BoxAnimated.glb",
+    "InterpolationTest/glTF-Binary/InterpolationTest.glb",
     "SimpleMorph/glTF-Embedded/SimpleMorph.gltf",
     "SimpleSkin/glTF-Embedded/SimpleSkin.gltf",
     "SimpleSparseAccessor/glTF-Embedded/SimpleSparseAccessor.gltf",
@@ -27,7 +29,7 @@ const COPIES: u32 = 120;
 fn damaged_files_never_panic() {
     let Some(folder) = common::scenes() else { return };
     let dir = tempfile::tempdir().expect("temporary folder");
-    let (mut loaded, mut refused) = (0, 0);
+    let (mut loaded, mut refused, mut posed) = (0, 0, 0);
     for (file, name) in FILES.iter().enumerate() {
         let good = std::fs::read(folder.join(name)).expect("a shared scene");
         let path = dir.path().join(Path::new(name).file_name().expect("a name"));
@@ -39,6 +41,8 @@ fn damaged_files_never_panic() {
                     loaded += 1;
                     result.scene.meshes.iter().for_each(|mesh| mesh.validate().expect("valid meshes"));
                     assert!(result.scene.instances.iter().all(|i| i.world_from_object.is_finite()));
+                    posed += usize::from(result.scene.rig.is_some());
+                    common::check_poses(&result.scene);
                 }
                 Err(error) => {
                     refused += 1;
@@ -47,9 +51,9 @@ fn damaged_files_never_panic() {
             }
         }
     }
-    println!("{loaded} loaded, {refused} refused");
+    println!("{loaded} loaded, {posed} of them with a rig, {refused} refused");
     assert!(
-        loaded > 50 && refused > 50,
+        loaded > 50 && refused > 50 && posed > 50,
         "{loaded} loaded, {refused} refused: the damage is not of the right size"
     );
 }

@@ -174,7 +174,8 @@ fn expect_counts(
         return Err(Fault::invalid(format!("{at}.input"), "no keyframes"));
     }
     if keyframes.checked_mul(per_keyframe) != Some(values) {
-        let reason = format!("{values} elements for {keyframes} keyframes of {per_keyframe}");
+        let needed = u128::from(keyframes) * u128::from(per_keyframe);
+        let reason = format!("{values} elements, {keyframes} keyframes need {needed}");
         return Err(Fault::invalid(place, reason));
     }
     Ok(())

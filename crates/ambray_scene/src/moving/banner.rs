@@ -53,7 +53,7 @@ pub fn banner() -> Scene {
     hall::light(&mut scene, Vec3::new(0.55, 0.75, 0.62));
     scene.radius = Some(1.0);
     scene.cameras = vec![
-        look("hall", Vec3::new(2.9, 1.75, 4.6), Vec3::new(-0.1, 1.4, 0.0), 48.0),
+        look("hall", Vec3::new(0.75, 1.6, 4.9), Vec3::new(-0.05, 1.52, 0.0), 45.0),
         look("hem", Vec3::new(1.1, 0.5, 1.9), Vec3::new(-0.1, 0.35, 0.0), 50.0),
     ];
     let rig = rig(deformer, scene.instances.len());

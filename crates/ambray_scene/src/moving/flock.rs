@@ -57,7 +57,7 @@ pub fn flock() -> Scene {
     hall::light(&mut scene, Vec3::new(-0.45, 0.8, 0.5));
     scene.radius = Some(0.8);
     scene.cameras = vec![
-        look("flock", Vec3::new(5.6, 2.7, 6.6), Vec3::new(-0.2, 1.45, 0.0), 46.0),
+        look("flock", Vec3::new(0.9, 2.5, 8.2), Vec3::new(-0.1, 1.6, 0.0), 46.0),
         look("above", Vec3::new(-1.0, 8.2, 6.6), Vec3::new(0.0, 0.8, 0.0), 48.0),
     ];
     let pose = rig.pose(None);

@@ -4,5 +4,8 @@
 mod common;
 
 mod at_rest;
+mod by_hand;
+mod files;
+mod malformed;
 mod poses;
 mod reference;

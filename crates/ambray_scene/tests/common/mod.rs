@@ -3,7 +3,8 @@
 
 use std::path::{Path, PathBuf};
 
-use ambray_scene::{LoadError, Loaded};
+use ambray_scene::animation::{Clips, Moment};
+use ambray_scene::{LoadError, Loaded, Scene};
 
 /// Folder of the shared scenes; `None`, with a word about it, where it is not there.
 ///
@@ -64,4 +65,21 @@ pub(crate) fn assert_refused(gltf: &str, expected: &str) {
     let text = load_files(&[("x.gltf", gltf.as_bytes())]).expect_err("must be refused").to_string();
     assert!(text.ends_with(expected), "{text}");
     assert_eq!(text.lines().count(), 1);
+}
+
+/// Moves `scene` to several moments of its clips; fails where that leaves something unsound.
+pub(crate) fn check_poses(scene: &Scene) {
+    let Some(rig) = scene.rig.clone() else { return };
+    let clips = (0..rig.clips.len().min(4)).map(Clips::One).chain([Clips::All]);
+    for (clips, time) in clips.flat_map(|clips| [0.0, 0.37, 1e9].map(|time| (clips, time))) {
+        let mut moved = scene.clone();
+        let pose = rig.pose(Some(&Moment { clips, time, repeat: time < 1.0 }));
+        moved.place(&pose);
+        moved.deform(&pose);
+        moved.meshes.iter().for_each(|mesh| mesh.validate().expect("valid meshes"));
+        assert!(moved.instances.iter().all(|i| i.world_from_object.is_finite()));
+        assert!(moved.shape_instances.iter().all(|i| i.world_from_object.is_finite()));
+        assert!(moved.cameras.iter().all(|c| c.position.is_finite() && c.forward.is_normalized()));
+        assert!(moved.bounds().is_none_or(|(lo, hi)| lo.is_finite() && hi.is_finite()));
+    }
 }
