@@ -1,5 +1,6 @@
 //! The command line as it was typed: parsed and checked for form, without side effects.
 
+mod animate;
 mod backend;
 mod sequence;
 
@@ -14,6 +15,7 @@ use clap::{
     builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
 };
 
+pub use animate::{AnimateArgs, Updates, UpdatesArgs};
 pub use backend::{Backend, BackendArgs, DeviceArgs, Grouping, GroupingArgs, Trace};
 pub use sequence::{Frames, Rate, SequenceArgs};
 
@@ -88,7 +90,8 @@ pub enum Command {
 /// Which scene to load.
 #[derive(Clone, Debug, Args)]
 pub struct SceneArgs {
-    /// Scene: a .gltf, .glb or .obj file, or the word atrium for the built-in scene (a file of that name: ./atrium)
+    /// Scene: a .gltf, .glb or .obj file, or a built-in one: atrium, or banner and flock, which move (a file of that name:
+    /// ./atrium)
     #[arg(value_name = "SCENE", default_value = "atrium")]
     pub scene: PathBuf,
     /// Scene of a glTF file by number from 0 or by name [default: the one that the file names, else the first]
@@ -153,6 +156,9 @@ pub struct RenderArgs {
     /// Who renders.
     #[command(flatten)]
     pub backend: BackendArgs,
+    /// How acceleration structures follow what deforms.
+    #[command(flatten)]
+    pub updates: UpdatesArgs,
     /// Settings.
     #[command(flatten)]
     pub settings: SettingsArgs,
@@ -190,15 +196,15 @@ pub struct QueryArgs {
 /// Arguments of `ambray bench`.
 #[derive(Clone, Debug, Args)]
 pub struct BenchArgs {
-    /// Scenes: .gltf, .glb or .obj files, or the word atrium for the built-in scene
+    /// Scenes: .gltf, .glb or .obj files, or built-in ones: atrium, or banner and flock, which move
     #[arg(value_name = "SCENE", default_value = "atrium")]
     pub scenes: Vec<PathBuf>,
     /// Scene of each glTF file by number from 0 or by name [default: the one that the file names, else the first]
     #[arg(long, value_name = "NAME_OR_INDEX")]
     pub gltf_scene: Option<String>,
-    /// Frames to measure per scene, at least
-    #[arg(long, value_name = "N", default_value_t = 100, value_parser = |text: &str| whole::<u32>(text, 1, 1_000_000))]
-    pub frames: u32,
+    /// Frames to measure per scene, at least [default: 100]
+    #[arg(long, value_name = "N", value_parser = |text: &str| whole::<u32>(text, 1, 1_000_000))]
+    pub frames: Option<u32>,
     /// Seconds to measure per scene, at least: frames go on until both --frames and --seconds are reached
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0, value_parser = seconds)]
     pub seconds: f64,
@@ -217,6 +223,9 @@ pub struct BenchArgs {
     /// unless --size and --spp say otherwise
     #[arg(long)]
     pub thin_cost: bool,
+    /// Scenes that move.
+    #[command(flatten)]
+    pub animate: AnimateArgs,
     /// Print the result as one JSON object on stdout
     #[arg(long)]
     pub json: bool,
@@ -232,6 +241,9 @@ pub struct BenchArgs {
     /// What shares an acceleration structure.
     #[command(flatten)]
     pub grouping: GroupingArgs,
+    /// How they follow what deforms.
+    #[command(flatten)]
+    pub updates: UpdatesArgs,
     /// Settings.
     #[command(flatten)]
     pub settings: SettingsArgs,
@@ -240,7 +252,7 @@ pub struct BenchArgs {
 /// Arguments of `ambray info`.
 #[derive(Clone, Debug, Args)]
 pub struct InfoArgs {
-    /// Scene: a .gltf, .glb or .obj file, or the word atrium for the built-in scene; none tells about the program
+    /// Scene: a .gltf, .glb or .obj file, or a built-in one: atrium, banner or flock; none tells about the program
     #[arg(value_name = "SCENE")]
     pub scene: Option<PathBuf>,
     /// Scene of a glTF file by number from 0 or by name [default: the one that the file names, else the first]

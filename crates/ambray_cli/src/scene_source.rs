@@ -5,20 +5,21 @@ use std::{
     time::{Duration, Instant, SystemTime},
 };
 
-use ambray::scene::{LoadOptions, Scene, SceneChoice, load_with};
+use ambray::scene::{LoadOptions, Scene, SceneChoice, atrium, load_with, moving};
 use anyhow::bail;
 
 use crate::{failure::with_hint, terminal};
 
-/// The word for the built-in scene.
-pub const BUILT_IN: &str = "atrium";
+/// The built-in scenes: their words on the command line, and what makes them. Help texts name them too.
+pub const BUILT_IN: [(&str, fn() -> Scene); 3] =
+    [("atrium", atrium::atrium), ("banner", moving::banner), ("flock", moving::flock)];
 
 /// A scene with its history.
 #[derive(Debug)]
 pub struct Source {
     /// The scene.
     pub scene: Scene,
-    /// Path of the file, or `atrium`.
+    /// Path of the file, or the word of a built-in scene.
     pub path: String,
     /// What pictures say they show: the path, with the scene within the file if one was asked for.
     pub label: String,
@@ -30,22 +31,25 @@ pub struct Source {
     pub load_time: Duration,
 }
 
-/// Loads the scene at `path`, or the built-in one, and shows the warnings.
+/// Loads the scene at `path`, or a built-in one, and shows the warnings.
 pub fn open(path: &Path, gltf_scene: Option<&str>) -> anyhow::Result<Source> {
     let start = Instant::now();
-    let built_in = path == Path::new(BUILT_IN);
+    let built_in = BUILT_IN.iter().find(|(word, _)| path == Path::new(word));
     let is_obj = path.extension().is_some_and(|ext| ext.eq_ignore_ascii_case("obj"));
-    if gltf_scene.is_some() && (built_in || is_obj) {
+    if gltf_scene.is_some() && (built_in.is_some() || is_obj) {
         bail!("--gltf-scene is not allowed with {}: only glTF files hold several scenes", path.display());
     }
-    let (scene, warnings) = if built_in {
-        (ambray::scene::atrium::atrium(), Vec::new())
+    let (scene, warnings) = if let Some((_, make)) = built_in {
+        (make(), Vec::new())
     } else {
         let loaded = load_with(path, &LoadOptions { scene: gltf_scene.map(choice) }).map_err(|error| {
             if path.exists() {
                 return error.into();
             }
-            with_hint(error, "SCENE is a .gltf, .glb or .obj file, or the word atrium for the built-in scene")
+            with_hint(
+                error,
+                "SCENE is a .gltf, .glb or .obj file, or a built-in scene: atrium, banner or flock",
+            )
         })?;
         (loaded.scene, loaded.warnings)
     };
@@ -57,7 +61,11 @@ pub fn open(path: &Path, gltf_scene: Option<&str>) -> anyhow::Result<Source> {
         scene,
         label: gltf_scene.map_or_else(|| name.clone(), |scene| format!("{name}, scene {scene}")),
         path: name,
-        modified: path.metadata().and_then(|metadata| metadata.modified()).ok().filter(|_| !built_in),
+        modified: path
+            .metadata()
+            .and_then(|metadata| metadata.modified())
+            .ok()
+            .filter(|_| built_in.is_none()),
         warnings,
         load_time: start.elapsed(),
     })
@@ -65,4 +73,23 @@ pub fn open(path: &Path, gltf_scene: Option<&str>) -> anyhow::Result<Source> {
 
 fn choice(name: &str) -> SceneChoice {
     name.parse().map_or_else(|_| SceneChoice::Name(name.to_owned()), SceneChoice::Index)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn built_in_scenes_are_named_in_help_and_hint() {
+        let hint = format!("{:?}", open(Path::new("none.glb"), None).unwrap_err());
+        let command = crate::args::command();
+        for (word, _) in BUILT_IN {
+            assert!(hint.contains(word), "{hint}");
+            for name in ["render", "query", "bench", "info"] {
+                let sub = command.find_subcommand(name).expect("a command");
+                let scene = sub.get_positionals().next().and_then(|arg| arg.get_help()).expect("help");
+                assert!(scene.to_string().contains(word), "{name}: {scene}");
+            }
+        }
+    }
 }

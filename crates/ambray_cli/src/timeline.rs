@@ -1,6 +1,9 @@
 //! Frames of a sequence in time.
 
-use ambray::settings::{Auto, Settings, Temporal};
+use ambray::{
+    scene::animation::{Clips, Rig},
+    settings::{Auto, Settings, Temporal},
+};
 
 use crate::args::{Frames, Rate};
 
@@ -59,6 +62,25 @@ impl Timeline {
     #[must_use]
     pub fn history(&self, frames: Frames) -> Option<String> {
         self.accumulates().then(|| format!("accumulated from frame {} at {} fps", frames.start(), self.rate))
+    }
+}
+
+/// What `settings` play of the animations of `rig`; `None` if there is no such animation.
+#[must_use]
+pub fn playing(settings: &Settings, rig: &Rig) -> Option<Clips> {
+    let Some(name) = settings.animation.value() else { return Some(Clips::One(0)) };
+    rig.clip(name).map(Clips::One).or_else(|| (name == "all").then_some(Clips::All))
+}
+
+/// `clips` in words.
+#[must_use]
+pub fn clips_name(clips: Clips, rig: &Rig) -> String {
+    match clips {
+        Clips::One(index) => match rig.clips[index].name.as_str() {
+            "" => index.to_string(),
+            name => format!("{index} ({})", name.escape_debug()),
+        },
+        Clips::All => "all".to_owned(),
     }
 }
 

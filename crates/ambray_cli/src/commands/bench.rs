@@ -11,9 +11,9 @@ use anyhow::bail;
 use serde::Serialize;
 
 use super::{
-    check_animation, check_memory, control,
+    animate, check_animation, check_memory, control,
     cost::CostReport,
-    explained, renderer,
+    explained, following, renderer,
     thin_cost::{self, ThinCost},
 };
 use crate::{
@@ -27,6 +27,9 @@ use crate::{
     },
     scene_source, settings_file, signals, terminal,
 };
+
+/// Frames that are measured unless `--frames` says otherwise.
+const FRAMES: u32 = 100;
 
 /// The result of `ambray bench`.
 #[derive(Clone, Debug, Serialize)]
@@ -62,7 +65,8 @@ struct SceneBench {
 pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
     let settings =
         settings_file::resolve(&SettingsArgs { flags: thin_cost::flags(args)?, ..args.settings.clone() })?;
-    let options = args.backend.options(args.grouping.grouping)?;
+    let options = following(&args.backend.options(args.grouping.grouping)?, args.updates.updates);
+    check_animate(args)?;
     let target = args.output.as_deref().map(Target::of);
     let saved = args.settings.save_settings.as_deref().map(Target::of);
     if target.is_some() && target == saved {
@@ -79,22 +83,11 @@ pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
     if cfg!(debug_assertions) {
         terminal::warn("this is not a release build: times say little");
     }
-    let mut report = BenchReport {
-        machine: Machine::detect(),
-        threads: 0,
-        warmup: args.warmup,
-        settings: settings.clone(),
-        scenes: Vec::new(),
+    let json = if args.animate.animate {
+        animate::run(args, &settings, &options)?
+    } else {
+        all(args, &settings, &options)?
     };
-    for scene in &args.scenes {
-        let (bench, threads) = measure(scene, args, &settings, &options)?;
-        report.threads = threads;
-        if !args.json && !args.run.quiet {
-            terminal::print(&bench.text(args.cost, &settings))?;
-        }
-        report.scenes.push(bench);
-    }
-    let json = report::json(&report)?;
     let mut batch = Batch::default();
     if let Some(target) = &target {
         batch.add(target, |out| Ok(out.write_all(json.as_bytes())?))?;
@@ -105,6 +98,42 @@ pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
     }
     batch.commit()?;
     if args.json { terminal::print(&json) } else { Ok(()) }
+}
+
+/// Refuses options that do not go together.
+fn check_animate(args: &BenchArgs) -> anyhow::Result<()> {
+    let others = [
+        ("--seconds", args.seconds > 0.0),
+        ("--cost", args.cost),
+        ("--bandwidth", args.bandwidth.is_some()),
+        ("--thin-cost", args.thin_cost),
+    ];
+    let other = others.into_iter().find_map(|(name, given)| given.then_some(name));
+    match (args.animate.animate, args.animate.needs_animate(), other) {
+        (true, _, Some(other)) => bail!("{other} is not allowed with --animate: it is about one pose"),
+        (false, Some(option), _) => bail!("{option} is not allowed without --animate"),
+        _ => Ok(()),
+    }
+}
+
+/// Measures all scenes; returns the result as JSON.
+fn all(args: &BenchArgs, settings: &Settings, options: &RendererOptions) -> anyhow::Result<String> {
+    let mut report = BenchReport {
+        machine: Machine::detect(),
+        threads: 0,
+        warmup: args.warmup,
+        settings: settings.clone(),
+        scenes: Vec::new(),
+    };
+    for scene in &args.scenes {
+        let (bench, threads) = measure(scene, args, settings, options)?;
+        report.threads = threads;
+        if !args.json && !args.run.quiet {
+            terminal::print(&bench.text(args.cost, settings))?;
+        }
+        report.scenes.push(bench);
+    }
+    report::json(&report)
 }
 
 /// Measures one scene; also returns the number of threads.
@@ -174,7 +203,7 @@ fn frames(renderer: &mut Renderer, args: &BenchArgs, variants: &[Settings]) -> a
             (measured.rays, measured.threads) = (stats.rays, stats.threads);
         }
         rounds += 1;
-        let by_frames = f64::from(rounds) / f64::from(args.frames);
+        let by_frames = f64::from(rounds) / f64::from(args.frames.unwrap_or(FRAMES));
         let by_time = if args.seconds > 0.0 { start.elapsed().as_secs_f64() / args.seconds } else { 1.0 };
         progress.report(by_frames.min(by_time) as f32);
         if by_frames >= 1.0 && by_time >= 1.0 {

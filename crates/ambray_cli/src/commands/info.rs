@@ -14,6 +14,7 @@ use anyhow::bail;
 use glam::Vec3;
 use serde::Serialize;
 
+use super::movement::Movement;
 use crate::{
     args::InfoArgs,
     failure::with_hint,
@@ -36,7 +37,7 @@ pub fn run(args: &InfoArgs) -> anyhow::Result<()> {
     let Some(path) = &args.scene else { return about_program(args.json) };
     let source = scene_source::open(path, args.gltf_scene.as_deref())?;
     let scene = SceneReport::of(&source);
-    let contents = Contents::of(&source.scene);
+    let (contents, movement) = (Contents::of(&source.scene), Movement::of(&source.scene));
     let mut renderer = if args.acceleration {
         let options = args.device.options(args.grouping.grouping);
         Renderer::open(source.scene, &options, Control::default()).map_err(super::explained)?
@@ -50,6 +51,7 @@ pub fn run(args: &InfoArgs) -> anyhow::Result<()> {
         backend: BackendReport::of(&renderer),
         acceleration: renderer.acceleration_stats().as_ref().map(AccelerationReport::of),
         contents,
+        movement,
         default_view: ViewReport::of(&view),
     };
     terminal::print(&if args.json { report::json(&info)? } else { info.text() })
@@ -62,7 +64,7 @@ fn check(args: &InfoArgs) -> anyhow::Result<()> {
     }
     if args.acceleration && args.scene.is_none() {
         let error = anyhow::anyhow!("--acceleration needs a SCENE");
-        return Err(with_hint(error, "for the built-in scene: ambray info atrium --acceleration"));
+        return Err(with_hint(error, "for a built-in scene: ambray info atrium --acceleration"));
     }
     match args.device.asked(args.grouping.grouping) {
         Some(option) if !args.acceleration => {
@@ -96,6 +98,8 @@ struct SceneInfo {
     acceleration: Option<AccelerationReport>,
     #[serde(flatten)]
     contents: Contents,
+    #[serde(flatten)]
+    movement: Movement,
     /// What a frame with default settings would use.
     default_view: ViewReport,
 }
@@ -347,18 +351,23 @@ impl SceneInfo {
             format!("{number} {}: at {}", named(&camera.name), triple(camera.position))
         };
         entries(&numbered, camera).for_each(|entry| line("", entry));
+        self.movement.lines().into_iter().for_each(|(name, rest)| line(name, rest));
         text
     }
 }
 
 /// One line for each of the `items`, the last for those left out.
-fn entries<'a, T>(items: &'a [T], entry: impl Fn(&T) -> String + 'a) -> impl Iterator<Item = String> + 'a {
+pub(super) fn entries<'a, T>(
+    items: &'a [T],
+    entry: impl Fn(&T) -> String + 'a,
+) -> impl Iterator<Item = String> + 'a {
     let left_out = items.len().saturating_sub(MOST_LISTED);
     let more = (left_out > 0).then(|| format!("  and {left_out} more (--json lists all)"));
     items.iter().take(MOST_LISTED).map(move |item| format!("  {}", entry(item))).chain(more)
 }
 
-fn named(name: &str) -> String {
+/// A name that may be empty or hold anything, on a line.
+pub(super) fn named(name: &str) -> String {
     if name.is_empty() { "(unnamed)".to_owned() } else { name.escape_debug().to_string() }
 }
 

@@ -1,10 +1,12 @@
 //! The commands.
 
+mod animate;
 pub mod bench;
 mod cost;
 mod devices;
 pub mod documents;
 pub mod info;
+mod movement;
 pub mod query;
 pub mod render;
 mod sequence;
@@ -18,7 +20,13 @@ use ambray::{
 use anyhow::bail;
 
 use crate::{
-    args::RunArgs, failure::Problems, machine, progress::Progress, report, scene_source::Source, signals,
+    args::{RunArgs, Updates},
+    failure::Problems,
+    machine,
+    progress::Progress,
+    report,
+    scene_source::Source,
+    signals,
 };
 
 /// Control of long work: Ctrl-C, threads and a progress bar.
@@ -46,6 +54,13 @@ fn check_memory(size: Size, extra: u64) -> anyhow::Result<()> {
         ),
         _ => Ok(()),
     }
+}
+
+/// `options` with the choice of how structures follow what deforms, on every backend.
+fn following(options: &RendererOptions, updates: Option<Updates>) -> RendererOptions {
+    // The backends are about to get this choice; until then all ways are the same.
+    let _ = updates.map(Updates::policy);
+    options.clone()
 }
 
 /// Refuses settings that ask for a moment of an animation where there is none.

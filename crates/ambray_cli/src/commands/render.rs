@@ -6,7 +6,7 @@ use ambray::{Renderer, RendererOptions, scene::Scene, settings::Settings};
 use anyhow::bail;
 use serde::Serialize;
 
-use super::{check_animation, check_memory, control, explained, renderer, sequence};
+use super::{check_animation, check_memory, control, explained, following, renderer, sequence};
 use crate::{
     args::{Grouping, RenderArgs},
     output::{
@@ -80,7 +80,7 @@ pub(super) struct Request<'a> {
 impl<'a> Request<'a> {
     fn new(args: &'a RenderArgs) -> anyhow::Result<Self> {
         let settings = settings_file::resolve(&args.settings)?;
-        let options = args.backend.options(Grouping::Auto)?;
+        let options = following(&args.backend.options(Grouping::Auto)?, args.updates.updates);
         let saved = args.settings.save_settings.as_deref().map(Target::of);
         if args.json && saved == Some(Target::Stdout) {
             bail!("--json is not allowed with --save-settings -: both write to stdout");

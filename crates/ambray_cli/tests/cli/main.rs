@@ -1,6 +1,7 @@
 //! Runs the `ambray` program as a user would.
 #![forbid(unsafe_code)]
 
+mod animate;
 mod animated;
 mod backend;
 mod bench_and_info;
