@@ -2,6 +2,7 @@
 
 pub mod backends;
 pub mod metrics;
+pub mod moving;
 pub mod parity;
 pub mod scenes;
 pub mod shared;

@@ -40,6 +40,23 @@ pub fn masked_rmse(a: &Map, b: &Map, mask: impl Fn(usize) -> bool) -> f64 {
     (sum / f64::from(count.max(1))).sqrt()
 }
 
+/// Flicker: root mean square of how much the error changes between two frames that follow each other. `truth` are those
+/// that they should be; the truth may move, and a constant error does not flicker.
+#[must_use]
+pub fn flicker(frames: [&Map; 2], truth: [&Map; 2]) -> f64 {
+    let error = |i: usize| {
+        let values = frames[i].values.iter().zip(&truth[i].values).map(|(a, b)| a - b).collect();
+        Map { width: frames[i].width, values }
+    };
+    rmse(&error(0), &error(1))
+}
+
+/// Pixels at which the maps differ by more than `least`.
+#[must_use]
+pub fn changed(a: &Map, b: &Map, least: f32) -> Vec<bool> {
+    a.values.iter().zip(&b.values).map(|(a, b)| (a - b).abs() > least).collect()
+}
+
 /// Peak signal-to-noise ratio for a peak of 1, decibel.
 #[must_use]
 pub fn psnr(a: &Map, b: &Map) -> f64 {

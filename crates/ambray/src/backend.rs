@@ -148,30 +148,33 @@ impl Backends {
 
     /// Who renders now.
     pub(crate) fn current_mut(&mut self) -> BackendMut<'_> {
-        if self.vulkan.is_some() && self.reason.get().is_none() {
-            return BackendMut::Vulkan(self.vulkan.as_mut().expect("just seen"));
+        let on_device = matches!(self.current(), Backend::Vulkan(_));
+        match (&mut self.vulkan, self.cpu.get_mut()) {
+            (Some(vulkan), _) if on_device => BackendMut::Vulkan(vulkan),
+            (_, Some(cpu)) => BackendMut::Cpu(cpu),
+            (_, None) => unreachable!("the processor was just made ready"),
         }
-        self.cpu();
-        BackendMut::Cpu(self.cpu.get_mut().expect("just made"))
     }
 
-    /// Moves the scene to `pose`, for the current backend. Returns the scene there.
+    /// Moves the scene to `pose`, for the current backend.
     pub(crate) fn pose(&mut self, pose: &Pose, control: &Control<'_>) -> Result<PoseStats, RenderError> {
-        let mut scene = Arc::clone(&self.scene);
-        let stats = match self.current_mut() {
+        // Made ready before the scene is taken: nobody else may hold it, or it would be copied.
+        self.current();
+        let mut scene = std::mem::take(&mut self.scene);
+        let moved = match self.current_mut() {
             BackendMut::Cpu(cpu) => {
-                let stats = cpu.pose(pose, control.threads)?;
+                let moved = cpu.pose(pose, control.threads);
                 scene = Arc::clone(cpu.world().surfaces().scene());
-                stats
+                moved.map_err(RenderError::from)
             }
             BackendMut::Vulkan(vulkan) => {
                 Arc::make_mut(&mut scene).place(pose);
-                vulkan.pose(&scene, pose, control)?
+                vulkan.pose(&scene, pose, control).map_err(RenderError::from)
             }
         };
         self.scene = scene;
         self.pose = Some(pose.clone());
-        Ok(stats)
+        moved
     }
 
     /// The scene at its pose. On a device the vertices of what deforms are as they were when it was opened.

@@ -11,13 +11,13 @@
 //! * *Movement in the picture* blurs what is resampled at every frame, so a mean that moves covers [`MOVING`] frames.
 //! * *Moving occluders* change the openness of surfaces that do not move at all. So with O its share M is kept that
 //!   is due to hits which may move against the point ([`Gathered::changing`](crate::gather::Gathered::changing)). Where M
-//!   differs between the frame and the mean, something came or went, and the mean is dropped ([`CHANGED`]); where M is
-//!   not small, it covers [`CHANGING`] frames.
+//!   differs between the frame and the mean, something came or went, and the mean is dropped ([`CHANGED`]). Where M is
+//!   not zero, the mean covers [`CHANGING`] frames, and its openness is drawn to within [`TOLERANCE`] of the frame's.
 //!
 //! While neither camera nor scene move, nothing is lost, and the mean converges to the truth of the filter.
 //! `shaders/include/temporal.glsl` of the Vulkan backend is the twin of this file: change both.
 
-use glam::Vec4;
+use glam::{Vec4, Vec4Swizzles};
 
 use crate::{
     camera::Camera,
@@ -30,13 +30,18 @@ use crate::{
 pub const LONGEST: f32 = 1_048_576.0;
 /// Most frames of a mean that moves in the picture.
 pub const MOVING: f32 = 16.0;
-/// Most frames of a mean where all of M is due to what moves.
-pub const CHANGING: f32 = 4.0;
-/// Share M from which [`CHANGING`] holds.
+/// Most frames of a mean where M is [`CHANGING_SHARE`] or more; below, down to M = 0, the limit rises to [`MOVING`].
+pub const CHANGING: f32 = 2.0;
+/// See [`CHANGING`].
 pub const CHANGING_SHARE: f32 = 0.1;
-/// Difference of M, between the frame and the mean, up to which nothing is lost (what few rays make of it), and from which
-/// on nothing is left.
-pub const CHANGED: [f32; 2] = [0.02, 0.08];
+/// Difference of M between the frame and the mean, relative to the larger one and [`CHANGED_FLOOR`], up to which nothing is
+/// lost (what few rays make of it), and from which on nothing is left.
+pub const CHANGED: [f32; 2] = [0.15, 0.6];
+/// What is added to M before differences are compared with it: changes that are small against this are left alone.
+pub const CHANGED_FLOOR: f32 = 0.02;
+/// Difference of openness that the few rays of a frame explain after the filter, times √N: about two standard deviations
+/// (spec §11: the sampling part).
+pub const TOLERANCE: f32 = 0.04;
 
 /// What is kept of a pixel from frame to frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -81,6 +86,8 @@ pub struct Accumulation {
     camera_moved: bool,
     /// Whether near radiance may change although no occluder moves.
     lit: bool,
+    /// Difference of openness between frame and mean that is left where something changes.
+    tolerance: f32,
 }
 
 impl Accumulation {
@@ -88,7 +95,8 @@ impl Accumulation {
     #[must_use]
     pub fn new(settings: &Settings, camera: &Camera, earlier: &Camera, scene_moved: bool) -> Self {
         let lit = matches!(settings.radiance_source, RadianceSource::Lit | RadianceSource::LitUnshadowed);
-        Self { filter: Filter::from(settings), scene_moved, camera_moved: camera != earlier, lit }
+        let tolerance = TOLERANCE / (settings.spp as f32).sqrt();
+        Self { filter: Filter::from(settings), scene_moved, camera_moved: camera != earlier, lit, tolerance }
     }
 
     /// The mean of pixel `pixel` with its values `now` of this frame, which count as one frame.
@@ -103,6 +111,7 @@ impl Accumulation {
         } else {
             self.resample(path, earlier)
         };
+        let kept = self.drawn(kept, now);
         let frames = self.confidence(kept.bent.w, now.bent.w) * kept.frames;
         let frames = frames.min(self.longest(is_still, kept.bent.w.max(now.bent.w)));
         let share = 1.0 / (frames + 1.0);
@@ -144,13 +153,28 @@ impl Accumulation {
         Mean { ambient: sum.ambient / weight, bent: sum.bent / weight, frames: sum.frames }
     }
 
+    /// The mean `kept`, drawn to the frame `now` where something changes.
+    fn drawn(&self, kept: Mean, now: &Mean) -> Mean {
+        let (open, changing) = (kept.ambient.x, kept.bent.w.max(now.bent.w));
+        if !self.scene_moved || changing <= 0.0 || kept.frames <= 0.0 {
+            return kept;
+        }
+        let drawn =
+            open.clamp(now.ambient.x - self.tolerance, now.ambient.x + self.tolerance).clamp(0.0, 1.0);
+        // Near radiance goes with what is not open: I = Lt (1 - O).
+        let near =
+            if open < 1.0 { kept.ambient.yzw() * ((1.0 - drawn) / (1.0 - open)) } else { now.ambient.yzw() };
+        Mean { ambient: near.extend(drawn).wxyz(), ..kept }
+    }
+
     /// Share of a mean that is still true, by the shares M of the mean and of the frame.
     fn confidence(&self, kept: f32, now: f32) -> f32 {
         if !self.scene_moved {
             return 1.0;
         }
         let [least, most] = CHANGED;
-        ((most - (now - kept).abs()) / (most - least)).clamp(0.0, 1.0)
+        let difference = (now - kept).abs() / (now.max(kept) + CHANGED_FLOOR);
+        ((most - difference) / (most - least)).clamp(0.0, 1.0)
     }
 
     /// Most frames of a mean.
