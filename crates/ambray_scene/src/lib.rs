@@ -1,4 +1,7 @@
 //! Scenes: what is there to be lit.
+//!
+//! A [`Scene`] comes from a file ([`load`](fn@load)) or from code alone ([`atrium`], [`moving`]). It is a scene at one moment; if it can
+//! move, its [`Rig`](animation::Rig) says how: see [`animation`].
 #![forbid(unsafe_code)]
 
 pub mod animation;

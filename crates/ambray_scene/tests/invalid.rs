@@ -76,6 +76,7 @@ fn each_file_loads_or_is_refused_in_one_line() {
                 for mesh in &loaded.scene.meshes {
                     mesh.validate().expect("loaded meshes keep their invariants");
                 }
+                common::check_poses(&loaded.scene);
             }
             Ok(_) => faults.push(format!("{name} must be refused")),
             Err(_) if harmless => faults.push(format!("{name} must load")),

@@ -70,7 +70,7 @@ pub fn flock() -> Scene {
 fn path(member: usize, dice: &mut Dice) -> Path {
     let pillar = |i: usize| DVec3::new(f64::from(PILLARS[i].x), 0.0, f64::from(PILLARS[i].y));
     let i = member / 4 % PILLARS.len();
-    if member % 5 == 0 && i != 2 {
+    if member.is_multiple_of(5) && i != 2 {
         Path::eight(pillar(2), pillar(i), dice)
     } else {
         Path::around(pillar(i), dice)

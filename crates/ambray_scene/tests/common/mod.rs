@@ -81,5 +81,9 @@ pub(crate) fn check_poses(scene: &Scene) {
         assert!(moved.shape_instances.iter().all(|i| i.world_from_object.is_finite()));
         assert!(moved.cameras.iter().all(|c| c.position.is_finite() && c.forward.is_normalized()));
         assert!(moved.bounds().is_none_or(|(lo, hi)| lo.is_finite() && hi.is_finite()));
+        let rest = rig.pose(None);
+        moved.place(&rest);
+        moved.deform(&rest);
+        assert!(moved.instances == scene.instances && moved.meshes == scene.meshes, "back at rest");
     }
 }
