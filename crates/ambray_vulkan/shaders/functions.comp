@@ -9,6 +9,7 @@
 #include "include/material_kind.glsl"
 #include "include/offset.glsl"
 #include "include/openness.glsl"
+#include "include/previous.glsl"
 #include "include/sampling.glsl"
 #include "include/shape.glsl"
 #include "include/texture.glsl"
@@ -118,6 +119,19 @@ void shape_surface() {
     put(3u, shape_project(shape, vector(1u)));
 }
 
+// Of a point of a mesh or, with an instance beyond them, of a shape at a point of its space.
+void previous() {
+    At at;
+    at.instance = word(0u);
+    at.uv = vec2(number(2u), number(3u));
+    at.object_position = vec3(number(4u), number(5u), number(6u));
+    if (!is_shape(at.instance)) {
+        at.place = place_in_mesh(at.instance, word(1u), at.uv, 0.0);
+    }
+    put(0u, previous_position(at));
+    put(3u, previous_normal(at, vec3(0.0)));
+}
+
 void main() {
     // The size of the view is the camera's.
     call = gl_GlobalInvocationID.y * push.extent.x + gl_GlobalInvocationID.x;
@@ -150,5 +164,6 @@ void main() {
         case FUNCTION_COMPOSE:
             put(0u, compose(vector(0u), vector(3u), vector(6u), vector4(9u), vector(13u)));
             break;
+        case FUNCTION_PREVIOUS: previous(); break;
     }
 }

@@ -19,6 +19,7 @@ use crate::{
     Acceleration, AccelerationOptions, AccelerationStats, Context, Culling, DeviceKind, Result, TraceMode,
     VulkanError,
     layout::{Push, Specialization},
+    motion::{Motion, Move},
     pipeline::{ProgramCache, TracePass},
     points, rays, readback,
     schedule::{Pass, Step, StepWork, cost_of, submissions},
@@ -35,7 +36,7 @@ const SUBMISSION_IN_SOFTWARE: Duration = Duration::from_secs(1);
 const MOST_SEARCHED: u64 = 4096;
 
 /// How a scene is put on a device.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct VulkanOptions {
     /// How rays are traced.
     pub trace: TraceMode,
@@ -48,6 +49,8 @@ pub struct VulkanOptions {
 pub struct VulkanBackend {
     /// Dropped first: its commands use the rest.
     state: Mutex<State>,
+    /// Made for the first pose.
+    motion: Option<Motion>,
     acceleration: Acceleration,
     tables: Tables,
     context: Arc<Context>,
@@ -93,6 +96,7 @@ impl VulkanBackend {
         let state = State::new(context, &acceleration, mode, programs)?;
         Ok(Self {
             state: Mutex::new(state),
+            motion: None,
             acceleration,
             tables,
             context: Arc::clone(context),
@@ -102,15 +106,29 @@ impl VulkanBackend {
         })
     }
 
-    /// Moves the scene to `pose`: `scene` is the one on the device, with its instances [placed](Scene::place) there.
+    /// Moves the scene to `pose`: `scene` is the one on the device, with its instances [placed](Scene::place) there. Its
+    /// meshes stay as they were; the device bends its own.
+    ///
+    /// An error leaves a backend that can render and be moved on, at the old pose or at the new one.
+    ///
+    /// # Panics
+    /// If `scene` or `pose` has other instances, meshes or deformers than the scene on the device.
     pub fn pose(&mut self, scene: &Arc<Scene>, pose: &Pose, control: &Control<'_>) -> Result<PoseStats> {
         let start = Instant::now();
-        let mut scene = Scene::clone(scene);
-        scene.deform(pose);
-        let deformation = start.elapsed();
-        *self = self.with_scene(&Arc::new(scene), control)?;
-        let total = start.elapsed();
-        Ok(PoseStats { deformation, bottom_level: total - deformation, total, ..PoseStats::default() })
+        control.check()?;
+        let state = self.state.get_mut().unwrap_or_else(PoisonError::into_inner);
+        let motion = match &mut self.motion {
+            Some(motion) => motion,
+            none => {
+                let programs = self.programs.motion(&state.interface)?;
+                none.insert(Motion::new(&self.context, scene, &self.acceleration, &self.tables, &programs)?)
+            }
+        };
+        let moved = Move { scene, pose, rendered: state.rendered };
+        let mut stats = motion.pose(&moved, &mut self.acceleration, &mut self.tables, control)?;
+        state.rendered = false;
+        stats.total = start.elapsed();
+        Ok(stats)
     }
 
     /// The device.
@@ -243,7 +261,15 @@ impl VulkanBackend {
             reach: view.openness.reach().max(view.radius),
             has_lights: !view.lights.is_empty(),
         };
-        self.run(state, settings, &passes, [width, height], Some(&culling), control)
+        let times = self.run(state, settings, &passes, [width, height], Some(&culling), control)?;
+        state.rendered = true;
+        Ok(times)
+    }
+
+    /// Device address of the tables of the scene, for a frame after those so far.
+    pub(crate) fn scene_address(&self, state: &State) -> u64 {
+        let address = |motion: &Motion| motion.address(&self.tables, state.rendered);
+        self.motion.as_ref().map_or(self.tables.address(), address)
     }
 
     /// Runs `passes` over `size` pixels in one or more submissions.
@@ -262,6 +288,7 @@ impl VulkanBackend {
         let programs = state.programs(&Specialization::of(settings, masked, shapes))?;
         let submissions = submissions(passes, size, state.budget);
         let mut times = StageTimes::default();
+        let scene = self.scene_address(state);
         for (index, steps) in submissions.iter().enumerate() {
             let State { commands, top, view_buffer, interface, budget, adapts, .. } = &mut *state;
             let start = Instant::now();
@@ -281,8 +308,7 @@ impl VulkanBackend {
                         );
                     }
                     last = Some(step);
-                    let (scene, view) = (self.tables.address(), view_buffer.address());
-                    let push = Push { scene, view, origin, extent };
+                    let push = Push { scene, view: view_buffer.address(), origin, extent };
                     match step {
                         StepWork::Trace(pass) => programs.trace(recorder, interface, pass, push),
                         StepWork::Filter => programs.filter(recorder, interface, push),

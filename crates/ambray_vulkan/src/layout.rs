@@ -5,10 +5,13 @@
 //! are stored as [`FAR`], since GPUs need not preserve infinities.
 
 mod declare;
+mod motion;
 mod scene;
 mod specialization;
 mod view;
 
+pub use motion::{Clusters, Deformation, Influence, Target};
+pub(crate) use motion::{ordered, unordered};
 pub use scene::{
     ImageLevel, Instance, Light, Material, Mesh, Placement, SceneTables, Shape, ShapeInstance, Texture,
     TextureUse,
@@ -115,6 +118,12 @@ constants! {
     QUERY_WIDTH: u32 = 8;
     QUERY_HEIGHT: u32 = 4;
 
+    /// Invocations of a workgroup of what deforms meshes and measures them.
+    MOTION_WIDTH: u32 = 64;
+    /// Words of a box, and of a cluster: lowest corner, then the negated highest corner, then a count.
+    BOX_WORDS: u32 = 6;
+    CLUSTER_WORDS: u32 = 7;
+
     /// Functions under test, and words of the arguments and of the values of a call.
     FUNCTION_INTEGERS: u32 = 0;
     FUNCTION_PIXELS: u32 = 1;
@@ -131,6 +140,7 @@ constants! {
     FUNCTION_SHAPE_SURFACE: u32 = 12;
     FUNCTION_FINISH: u32 = 13;
     FUNCTION_COMPOSE: u32 = 14;
+    FUNCTION_PREVIOUS: u32 = 15;
     ARGUMENTS: u32 = 16;
     VALUES: u32 = 8;
 }
@@ -145,6 +155,7 @@ pub fn glsl() -> String {
     text.push('\n');
     text.push_str(&specialization::glsl());
     scene::glsl(&mut text);
+    motion::glsl(&mut text);
     view::glsl(&mut text);
     text.push_str("\n#endif\n");
     text

@@ -10,6 +10,7 @@ pub mod cost;
 mod error;
 pub mod layout;
 mod memory;
+mod motion;
 mod pipeline;
 mod planes;
 mod points;

@@ -23,7 +23,7 @@ use crate::{
 pub(crate) const MOST: usize = 1 << 20;
 
 /// Points in a row.
-const ROW: usize = 1024;
+pub(crate) const ROW: usize = 1024;
 
 /// Width and height of the picture that `count` points are folded into.
 pub(crate) fn folded(count: usize) -> [u32; 2] {

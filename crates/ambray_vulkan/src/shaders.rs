@@ -16,6 +16,10 @@ modules! {
     AMBIENT_QUERY = "ambient.comp";
     RAYS_QUERY = "rays.comp";
     FILTER = "filter.comp";
+    DEFORM = "deform.comp";
+    ASSIGN = "assign.comp";
+    MEASURE = "measure.comp";
+    COST = "cost.comp";
     CLOSEST_HIT = "hit.rchit";
     MISS = "miss.rmiss";
     MASKED_ANY_HIT = "masked.rahit";

@@ -43,6 +43,8 @@ pub(crate) struct State {
     pub(crate) budget: Budget,
     /// Whether the budget follows the speed of the device.
     pub(crate) adapts: bool,
+    /// Whether a frame of the current pose was rendered.
+    pub(crate) rendered: bool,
     planes: Option<Planes>,
     samples: Option<(SampleKey, Buffer, Buffer)>,
     lights: Option<(Vec<layout::Light>, Buffer)>,
@@ -71,6 +73,7 @@ impl State {
             top,
             view_buffer,
             adapts: true,
+            rendered: false,
             budget: Budget::of(context.limits(), context.report().kind == DeviceKind::Software),
             planes: None,
             samples: None,

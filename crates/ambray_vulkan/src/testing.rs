@@ -5,12 +5,13 @@ use std::sync::Arc;
 
 use ambray_core::{sampling::SampleSets, settings::Settings, view::View};
 use ash::vk::BufferUsageFlags;
-use glam::Vec2;
+use bytemuck::Pod;
+use glam::{Vec2, Vec3, Vec4};
 
 use crate::{
-    Location, Result, VulkanBackend, Work,
+    Buffer, Location, Result, VulkanBackend, Work,
     constants::SampleTables,
-    layout::{ARGUMENTS, Push, QUERY_HEIGHT, QUERY_WIDTH, Specialization, VALUES},
+    layout::{ARGUMENTS, NONE, Push, QUERY_HEIGHT, QUERY_WIDTH, Specialization, VALUES},
     pipeline::{ComputePipeline, Interface},
     points,
     state::Inputs,
@@ -59,7 +60,7 @@ impl<'a> Functions<'a> {
         let values = context.buffer("values", size, usage, Location::Readback)?;
         (constants.inputs, constants.outputs) = (arguments.address(), values.address());
         state.write_view(&constants);
-        let (scene, view) = (self.backend.tables().address(), state.view_buffer.address());
+        let (scene, view) = (self.backend.scene_address(&state), state.view_buffer.address());
         let push = Push { scene, view, origin: [0; 2], extent };
         context.run(|recorder| {
             self.pipeline.record(recorder, &self.interface, [QUERY_WIDTH, QUERY_HEIGHT], push);
@@ -75,6 +76,34 @@ impl VulkanBackend {
     pub fn limit_submissions(&self, rays: u64) {
         let mut state = self.state();
         (state.budget.cost, state.adapts) = (rays, false);
+    }
+
+    /// Positions, normals and tangents of a mesh as the shaders read them; lists are empty where it lacks them.
+    pub fn vertices(&self, mesh: usize) -> Result<(Vec<Vec3>, Vec<Vec3>, Vec<Vec4>)> {
+        let tables = self.tables();
+        let mesh = tables.meshes[mesh];
+        Ok((
+            self.entries(&tables.positions, mesh.first_vertex, mesh.vertices)?,
+            self.entries(&tables.normals, mesh.first_normal, mesh.vertices)?,
+            self.entries(&tables.tangents, mesh.first_tangent, mesh.vertices)?,
+        ))
+    }
+
+    /// Entries of a table; none if they begin nowhere.
+    fn entries<T: Pod>(&self, table: &Buffer, first: u32, count: u32) -> Result<Vec<T>> {
+        if first == NONE {
+            return Ok(Vec::new());
+        }
+        let (stride, usage) = (size_of::<T>() as u64, BufferUsageFlags::TRANSFER_DST);
+        let size = stride * u64::from(count);
+        let copy = self.context().buffer("entries", size, usage, Location::Readback)?;
+        self.context().run(|recorder| {
+            recorder.barrier(Work::Everything, Work::Transfer);
+            recorder.copy(table, stride * u64::from(first), &copy, 0, size);
+            recorder.barrier(Work::Transfer, Work::HostRead);
+            Ok(())
+        })?;
+        Ok(copy.read(0, count as usize))
     }
 
     /// Takes the same points of the unit square for every pixel, as long as the sampling of `settings` stays.

@@ -71,6 +71,9 @@ const uint FILTER_HEIGHT = 8u;
 const uint FILTER_REACH = 2u;
 const uint QUERY_WIDTH = 8u;
 const uint QUERY_HEIGHT = 4u;
+const uint MOTION_WIDTH = 64u;
+const uint BOX_WORDS = 6u;
+const uint CLUSTER_WORDS = 7u;
 const uint FUNCTION_INTEGERS = 0u;
 const uint FUNCTION_PIXELS = 1u;
 const uint FUNCTION_ALPHA = 2u;
@@ -86,6 +89,7 @@ const uint FUNCTION_SHAPE_RAY = 11u;
 const uint FUNCTION_SHAPE_SURFACE = 12u;
 const uint FUNCTION_FINISH = 13u;
 const uint FUNCTION_COMPOSE = 14u;
+const uint FUNCTION_PREVIOUS = 15u;
 const uint ARGUMENTS = 16u;
 const uint VALUES = 8u;
 
@@ -122,6 +126,10 @@ struct SceneTables {
     uint64_t triangles;
     uint64_t shapes;
     uint64_t shape_instances;
+    uint64_t previous_instances;
+    uint64_t previous_shape_instances;
+    uint64_t previous_positions;
+    uint64_t previous_normals;
     uint mesh_instances;
     uint padding;
 };
@@ -148,6 +156,8 @@ struct Mesh {
     uint first_uv;
     uint uv_sets;
     uint material;
+    uint previous_vertex;
+    uint previous_normal;
 };
 
 struct TextureUse {
@@ -214,6 +224,47 @@ struct Light {
     vec3 axis;
     float cos_inner;
     float cos_outer;
+};
+
+struct Deformation {
+    uint64_t rest_positions;
+    uint64_t rest_normals;
+    uint64_t rest_tangents;
+    uint64_t targets;
+    uint64_t influences;
+    uint64_t joints;
+    uint64_t positions;
+    uint64_t normals;
+    uint64_t tangents;
+    uint64_t bounds;
+    uint vertices;
+    uint target_count;
+    uint influences_per_vertex;
+    uint padding;
+};
+
+struct Target {
+    uint64_t positions;
+    uint64_t normals;
+    uint64_t tangents;
+    float weight;
+    uint padding;
+};
+
+struct Influence {
+    uint joint;
+    float weight;
+};
+
+struct Clusters {
+    uint64_t positions;
+    uint64_t triangles;
+    uint64_t clusters;
+    uint64_t boxes;
+    uint64_t bounds;
+    uint64_t cost;
+    uint triangle_count;
+    uint side;
 };
 
 struct GatherConstants {

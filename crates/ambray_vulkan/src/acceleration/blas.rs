@@ -4,20 +4,13 @@ use std::sync::Arc;
 
 use ash::vk;
 
+use super::build::{self, Manner};
 use super::input::{Input, Primitives};
 use super::size_queries::SizeQueries;
 use super::structure::{Scratch, Structure};
 use crate::commands::Work;
 use crate::error::{Result, VulkanError};
 use crate::{Buffer, Context};
-
-/// How a structure is to be built.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Manner {
-    pub(super) opaque: bool,
-    /// Built fast and updatable, else for fast tracing.
-    pub(super) deforms: bool,
-}
 
 /// Builds structures, several at a time.
 pub(super) struct Builder<'c> {
@@ -41,17 +34,6 @@ struct Pending {
     manner: Manner,
     structure: Structure,
     scratch: u64,
-}
-
-impl Manner {
-    fn flags(self, compact: bool) -> vk::BuildAccelerationStructureFlagsKHR {
-        use vk::BuildAccelerationStructureFlagsKHR as Flags;
-        match (self.deforms, compact) {
-            (true, _) => Flags::PREFER_FAST_BUILD | Flags::ALLOW_UPDATE,
-            (false, true) => Flags::PREFER_FAST_TRACE | Flags::ALLOW_COMPACTION,
-            (false, false) => Flags::PREFER_FAST_TRACE,
-        }
-    }
 }
 
 impl<'c> Builder<'c> {
@@ -81,7 +63,8 @@ impl<'c> Builder<'c> {
                 limit: limits.primitives,
             });
         }
-        let sizes = self.sizes(&primitives, manner);
+        let geometry = primitives.geometry(0, 0, manner);
+        let sizes = build::sizes(self.context, geometry, count as u32, manner.flags(self.compact));
         let scratch = sizes.build_scratch_size.next_multiple_of(u64::from(limits.scratch_alignment));
         let is_full = self.scratch + scratch > self.batch || self.input + primitives.bytes() > self.batch;
         if is_full && !self.pending.is_empty() {
@@ -105,26 +88,6 @@ impl<'c> Builder<'c> {
         Ok(std::mem::take(&mut self.done))
     }
 
-    fn sizes(
-        &self,
-        primitives: &Primitives,
-        manner: Manner,
-    ) -> vk::AccelerationStructureBuildSizesInfoKHR<'static> {
-        let geometry = [primitives.geometry(0, 0, manner.opaque)];
-        let info = build_info(&geometry, manner.flags(self.compact));
-        let mut sizes = vk::AccelerationStructureBuildSizesInfoKHR::default();
-        // SAFETY: sizes follow counts and formats; addresses are not read.
-        unsafe {
-            self.context.acceleration.get_acceleration_structure_build_sizes(
-                vk::AccelerationStructureBuildTypeKHR::DEVICE,
-                &info,
-                &[primitives.counts().0 as u32],
-                &mut sizes,
-            );
-        }
-        sizes
-    }
-
     /// Builds what is pending, and waits for it; then its input is freed.
     fn flush(&mut self) -> Result<()> {
         let batch = std::mem::take(&mut self.pending);
@@ -144,7 +107,7 @@ impl<'c> Builder<'c> {
                 [p.primitives.geometry(
                     inputs.first.address() + first,
                     inputs.second.address() + second,
-                    p.manner.opaque,
+                    p.manner,
                 )]
             })
             .collect();
@@ -153,7 +116,7 @@ impl<'c> Builder<'c> {
             .map(|(p, geometry)| {
                 let scratch_data = vk::DeviceOrHostAddressKHR { device_address: at };
                 at += p.scratch;
-                build_info(geometry, p.manner.flags(self.compact))
+                build::info(geometry, p.manner.flags(self.compact))
                     .dst_acceleration_structure(p.structure.handle())
                     .scratch_data(scratch_data)
             })
@@ -166,7 +129,7 @@ impl<'c> Builder<'c> {
         let ranges: Vec<&[_]> = ranges.iter().map(|r| &r[..]).collect();
         let compactable: Vec<_> = batch
             .iter()
-            .filter(|p| self.compact && !p.manner.deforms)
+            .filter(|p| self.compact && p.manner.follows.is_none())
             .map(|p| p.structure.handle())
             .collect();
         let queries = SizeQueries::new(self.context, compactable.len() as u32)?;
@@ -187,7 +150,7 @@ impl<'c> Builder<'c> {
         let mut compacted = Vec::new();
         let mut copies = Vec::new();
         for pending in batch {
-            if !self.compact || pending.manner.deforms {
+            if !self.compact || pending.manner.follows.is_some() {
                 compacted.push(pending.structure);
                 continue;
             }
@@ -228,17 +191,6 @@ impl<'c> Builder<'c> {
             Ok(())
         })
     }
-}
-
-fn build_info<'a>(
-    geometry: &'a [vk::AccelerationStructureGeometryKHR<'a>],
-    flags: vk::BuildAccelerationStructureFlagsKHR,
-) -> vk::AccelerationStructureBuildGeometryInfoKHR<'a> {
-    vk::AccelerationStructureBuildGeometryInfoKHR::default()
-        .ty(vk::AccelerationStructureTypeKHR::BOTTOM_LEVEL)
-        .flags(flags)
-        .mode(vk::BuildAccelerationStructureModeKHR::BUILD)
-        .geometries(geometry)
 }
 
 /// The input of a batch on the device.

@@ -1,12 +1,15 @@
 //! What a bottom-level structure is built from.
 
-use ambray_scene::Scene;
+use std::collections::HashSet;
+
+use ambray_scene::{Mesh, Scene, animation::LARGEST_COORDINATE};
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use glam::{Affine3A, Vec3};
 
 use super::GeometryKind;
 use super::bounds::Bounds;
+use super::build::{self, Manner};
 use super::duplicates;
 use super::geometry::{self, Placed};
 use super::plan::{Content, Group};
@@ -48,6 +51,10 @@ impl Input {
             Content::Object(users) => &users[..1],
         };
         let is_world = matches!(group.content, Content::World(_));
+        if group.deforms {
+            let mesh = scene.instances[members[0] as usize].mesh;
+            return Self::deforming(&scene.meshes[mesh as usize], group.opaque);
+        }
         match group.kind {
             GeometryKind::Shape => Self::boxes(scene, members, is_world),
             GeometryKind::Opaque => Self::triangles(scene, members, is_world, true),
@@ -87,6 +94,45 @@ impl Input {
         let triangles = order.iter().map(|&i| triangles[i as usize]).collect();
         let refs = order.iter().map(|&i| refs[i as usize]).collect();
         Self { primitives: Primitives::Triangles { positions, triangles }, refs, bounds, dropped }
+    }
+
+    /// Triangles of a mesh whose vertices will move: those that no ray can hit now may be hit at another pose. Left out is
+    /// what has no area wherever the vertices are, and if `distinct` what has the same vertices as another.
+    fn deforming(mesh: &Mesh, distinct: bool) -> Self {
+        // A coordinate that is no number would hide its triangles for good, since updates bring nothing back.
+        let within = |p: &Vec3| p.abs().cmple(Vec3::splat(LARGEST_COORDINATE)).all();
+        let positions: Vec<_> =
+            mesh.positions.iter().map(|p| if within(p) { *p } else { Vec3::ZERO }).collect();
+        let mut seen = HashSet::new();
+        let mut counts = |triangle: [u32; 3]| {
+            let [mut a, mut b, mut c] = triangle;
+            if a > b {
+                (a, b) = (b, a);
+            }
+            if b > c {
+                (b, c) = (c, b);
+            }
+            if a > b {
+                (a, b) = (b, a);
+            }
+            a < b && b < c && (!distinct || seen.insert([a, b, c]))
+        };
+        let kept: Vec<u32> =
+            (0_u32..).zip(&mesh.triangles).filter(|(_, t)| counts(**t)).map(|(i, _)| i).collect();
+        let centre = |&i: &u32| {
+            Bounds::from_iter(mesh.triangles[i as usize].map(|vertex| positions[vertex as usize])).centre()
+        };
+        let order = spatial_order(&kept.iter().map(centre).collect::<Vec<_>>());
+        let order: Vec<u32> = order.iter().map(|&i| kept[i as usize]).collect();
+        Self {
+            refs: order.iter().map(|&i| [NONE, i]).collect(),
+            bounds: positions.iter().copied().collect(),
+            dropped: (mesh.triangles.len() - order.len()) as u64,
+            primitives: Primitives::Triangles {
+                triangles: order.iter().map(|&i| mesh.triangles[i as usize]).collect(),
+                positions,
+            },
+        }
     }
 
     fn boxes(scene: &Scene, members: &[u32], is_world: bool) -> Self {
@@ -131,28 +177,21 @@ impl Primitives {
         &self,
         first: vk::DeviceAddress,
         second: vk::DeviceAddress,
-        opaque: bool,
+        manner: Manner,
     ) -> vk::AccelerationStructureGeometryKHR<'static> {
-        let at = |device_address| vk::DeviceOrHostAddressConstKHR { device_address };
-        let (kind, data) = match self {
+        match self {
             Self::Triangles { positions, .. } => {
-                let triangles = vk::AccelerationStructureGeometryTrianglesDataKHR::default()
-                    .vertex_format(vk::Format::R32G32B32_SFLOAT)
-                    .vertex_data(at(first))
-                    .vertex_stride(12)
-                    .max_vertex(positions.len().saturating_sub(1) as u32)
-                    .index_type(vk::IndexType::UINT32)
-                    .index_data(at(second));
-                (vk::GeometryTypeKHR::TRIANGLES, vk::AccelerationStructureGeometryDataKHR { triangles })
+                build::triangles(first, positions.len() as u64, second, manner)
             }
             Self::Boxes(_) => {
                 let aabbs = vk::AccelerationStructureGeometryAabbsDataKHR::default()
-                    .data(at(first))
+                    .data(vk::DeviceOrHostAddressConstKHR { device_address: first })
                     .stride(size_of::<ShapeBox>() as u64);
-                (vk::GeometryTypeKHR::AABBS, vk::AccelerationStructureGeometryDataKHR { aabbs })
+                vk::AccelerationStructureGeometryKHR::default()
+                    .geometry_type(vk::GeometryTypeKHR::AABBS)
+                    .geometry(vk::AccelerationStructureGeometryDataKHR { aabbs })
+                    .flags(manner.geometry_flags())
             }
-        };
-        let flags = if opaque { vk::GeometryFlagsKHR::OPAQUE } else { vk::GeometryFlagsKHR::empty() };
-        vk::AccelerationStructureGeometryKHR::default().geometry_type(kind).geometry(data).flags(flags)
+        }
     }
 }

@@ -6,15 +6,18 @@
 
 mod blas;
 mod bounds;
+mod build;
 mod cull;
 mod duplicates;
 mod geometry;
 mod grouping;
 mod input;
+mod motion;
 mod overlap;
 mod plan;
 mod rays;
 mod size_queries;
+mod slot;
 mod sort;
 mod stats;
 mod structure;
@@ -24,16 +27,19 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use ambray_core::control::Control;
-use ambray_scene::Scene;
+use ambray_scene::{Scene, animation::Updates};
 use glam::Affine3A;
 
-use self::blas::{Builder, Manner};
+use self::blas::Builder;
 pub use self::bounds::Bounds;
+use self::build::Manner;
 pub use self::cull::Culling;
 use self::input::{Input, Primitives};
+pub(crate) use self::motion::{Follower, Job, Mode};
 use self::plan::Content;
+use self::slot::Slot;
 pub use self::stats::AccelerationStats;
-use self::structure::Structure;
+pub(crate) use self::structure::Scratch;
 pub use self::tlas::TopLevel;
 use crate::Context;
 use crate::error::{Result, VulkanError};
@@ -43,7 +49,7 @@ use crate::layout::{GEOMETRY_MASKED, GEOMETRY_OPAQUE, GEOMETRY_SHAPE, NONE};
 const PLACEMENTS: u64 = 1 << 24;
 
 /// How acceleration structures are built. Pictures agree for all choices up to rounding.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AccelerationOptions {
     /// What shares a structure.
     pub grouping: Grouping,
@@ -55,11 +61,19 @@ pub struct AccelerationOptions {
     /// Input of the structures that are built at once, and scratch memory for them, bytes each; a structure that needs more
     /// is built alone. By default 64 MiB.
     pub batch: u64,
+    /// How structures follow what deforms.
+    pub updates: Updates,
 }
 
 impl Default for AccelerationOptions {
     fn default() -> Self {
-        Self { grouping: Grouping::Auto, copy_budget: 2_000_000, compact: true, batch: 64 << 20 }
+        Self {
+            grouping: Grouping::Auto,
+            copy_budget: 2_000_000,
+            compact: true,
+            batch: 64 << 20,
+            updates: Updates::default(),
+        }
     }
 }
 
@@ -112,7 +126,11 @@ struct Placed {
 /// The bottom-level structures of a scene, and where they are. The device must be done with them when they are dropped.
 #[derive(Debug)]
 pub struct Acceleration {
-    structures: Vec<Structure>,
+    structures: Vec<Slot>,
+    /// Meshes whose vertices move.
+    followers: Vec<Follower>,
+    /// How builds are batched and followed up.
+    options: AccelerationOptions,
     /// Of each structure, in its own space.
     bounds: Vec<Bounds>,
     placements: Vec<Placement>,
@@ -125,8 +143,8 @@ pub struct Acceleration {
 impl Acceleration {
     /// Builds the structures of `scene`, and waits for them. `opaque` says of each mesh whether every ray sees all of it.
     ///
-    /// Triangles and placements that no ray can hit are dropped, as the CPU backend does; of meshes that deform, those that
-    /// no ray can hit in their own space.
+    /// Triangles and placements that no ray can hit are dropped, as the CPU backend does; of meshes that
+    /// deform, all that may show at another pose are kept.
     ///
     /// # Panics
     /// If an index in the scene is out of range.
@@ -143,6 +161,8 @@ impl Acceleration {
         let mut builder = Builder::new(context, options.compact, options.batch);
         let mut all = Self {
             structures: Vec::new(),
+            followers: Vec::new(),
+            options: *options,
             bounds: Vec::new(),
             placements: Vec::new(),
             placed: Vec::new(),
@@ -153,17 +173,19 @@ impl Acceleration {
         for (index, group) in plan.groups.into_iter().enumerate() {
             control.check()?;
             let input = Input::of(scene, &group);
-            all.add(scene, &group, &input)?;
-            builder.push(input, Manner { opaque: group.opaque, deforms: group.deforms })?;
+            let follows = group.deforms.then_some(options.updates.policy);
+            let manner = Manner { opaque: group.opaque, follows };
+            all.add(scene, &group, &input, manner)?;
+            builder.push(input, manner)?;
             (control.progress)((index + 1) as f32 / count as f32);
         }
-        all.structures = builder.finish()?;
+        all.structures = builder.finish()?.into_iter().map(Slot::new).collect();
         all.sort();
         all.check_limits(context)?;
         all.stats.structures = all.structures.len();
         all.stats.placements = all.placements.len();
         all.stats.bytes_before = builder.bytes_before;
-        all.stats.bytes = all.structures.iter().map(Structure::size).sum();
+        all.stats.bytes = all.structures.iter().map(Slot::size).sum();
         all.stats.scratch_bytes = builder.largest_scratch;
         let boxes: Vec<_> = all.placed.iter().filter_map(|p| p.bounds).collect();
         all.stats.overlap = overlap::overlap(&boxes);
@@ -197,23 +219,12 @@ impl Acceleration {
         self.placed.iter().map(|p| p.bounds)
     }
 
-    /// Takes the places of moving instances from `scene`, which must be the one that was built but for these. They show
-    /// with the next build of a top-level structure.
-    pub fn move_to(&mut self, scene: &Scene) {
-        for (placement, placed) in self.placements.iter().zip(&mut self.placed) {
-            if placement.instance != NONE {
-                placed.transform = transform_of(scene, placement.instance);
-                placed.bounds = geometry::place(self.bounds[placed.structure], &placed.transform);
-            }
-        }
-    }
-
     fn placed(&self) -> &[Placed] {
         &self.placed
     }
 
     fn structure_address(&self, index: usize) -> u64 {
-        self.structures[index].address()
+        self.structures[index].shown().address()
     }
 
     /// Largest coordinate of all that is placed.
@@ -222,7 +233,7 @@ impl Acceleration {
     }
 
     /// Adds the next structure's refs and placements.
-    fn add(&mut self, scene: &Scene, group: &plan::Group, input: &Input) -> Result<()> {
+    fn add(&mut self, scene: &Scene, group: &plan::Group, input: &Input, manner: Manner) -> Result<()> {
         let structure = self.bounds.len();
         let end = self.refs.len() as u64 + input.refs.len() as u64;
         let Ok(first_ref) = u32::try_from(self.refs.len()) else {
@@ -239,6 +250,12 @@ impl Acceleration {
         match &group.content {
             Content::World(_) => place(NONE, Affine3A::IDENTITY, Some(input.bounds)),
             Content::Object(users) => {
+                if manner.follows.is_some() {
+                    let mesh = scene.instances[users[0] as usize].mesh;
+                    let vertices = scene.meshes[mesh as usize].positions.len() as u32;
+                    let counts = [vertices, input.refs.len() as u32];
+                    self.followers.push(Follower::new(mesh, counts, first_ref, structure, manner));
+                }
                 for &user in users {
                     let transform = transform_of(scene, user);
                     place(user, transform, geometry::place(input.bounds, &transform));

@@ -6,6 +6,7 @@ use glam::Affine3A;
 use super::geometry::{self, Placed};
 use super::grouping::{self, Item};
 use super::{AccelerationOptions, GeometryKind, Grouping};
+use crate::tables::deforming_meshes;
 
 /// A bottom-level structure to be.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,12 +46,10 @@ pub(super) fn plan(scene: &Scene, opaque: &[bool], options: &AccelerationOptions
     let mut boxes = Vec::new();
 
     let mut users: Vec<Vec<u32>> = vec![Vec::new(); scene.meshes.len()];
-    let mut deforming = Vec::new();
+    let deforming = deforming_meshes(scene);
     for (index, instance) in (0_u32..).zip(&scene.instances) {
         let mesh = instance.mesh as usize;
-        if instance.motion == Motion::Deforming {
-            deforming.push((index, mesh));
-        } else if shared[mesh] || instance.motion == Motion::Rigid {
+        if shared[mesh] || deforming[mesh] || instance.motion == Motion::Rigid {
             users[mesh].push(index);
         } else {
             let placed = Placed::new(&scene.meshes[mesh], &instance.world_from_object);
@@ -61,18 +60,19 @@ pub(super) fn plan(scene: &Scene, opaque: &[bool], options: &AccelerationOptions
             }
         }
     }
-    let users = users.into_iter().enumerate().map(|(mesh, users)| (mesh, users, false));
-    let deforming = deforming.into_iter().map(|(index, mesh)| (mesh, vec![index], true));
-    for (mesh, mut users, deforms) in users.chain(deforming) {
-        if users.is_empty() {
-            continue;
-        }
+    for (mesh, mut users) in users.into_iter().enumerate().filter(|(_, users)| !users.is_empty()) {
+        let deforms = deforming[mesh];
         let (bounds, _) = Placed::new(&scene.meshes[mesh], &Affine3A::IDENTITY).bounds();
         let world = |i: u32| geometry::place(bounds, &scene.instances[i as usize].world_from_object);
         // What cannot be placed now may be placed in another frame; what never can has no structure.
         boxes.extend(users.iter().filter_map(|&i| world(i)));
-        users.retain(|&i| scene.instances[i as usize].motion != Motion::Static || world(i).is_some());
-        if !bounds.is_empty() && !users.is_empty() {
+        let may_show =
+            |i: u32| deforms || scene.instances[i as usize].motion != Motion::Static || world(i).is_some();
+        users.retain(|&i| may_show(i));
+        let is_area = |t: &[u32; 3]| t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
+        let has_triangles =
+            if deforms { scene.meshes[mesh].triangles.iter().any(is_area) } else { !bounds.is_empty() };
+        if has_triangles && !users.is_empty() {
             let kind = if opaque[mesh] { GeometryKind::Opaque } else { GeometryKind::Masked };
             groups.push(Group { kind, opaque: opaque[mesh], deforms, content: Content::Object(users) });
         }

@@ -66,14 +66,14 @@ impl Drop for Structure {
 
 /// Scratch memory for builds: aligned as the device wants it, which buffers alone need not be.
 #[derive(Debug)]
-pub(super) struct Scratch {
+pub(crate) struct Scratch {
     buffer: Buffer,
     address: vk::DeviceAddress,
 }
 
 impl Scratch {
     /// Makes one of at least `size` bytes.
-    pub(super) fn new(context: &Arc<Context>, size: u64) -> Result<Self> {
+    pub(crate) fn new(context: &Arc<Context>, size: u64) -> Result<Self> {
         let alignment = u64::from(context.limits().scratch_alignment);
         let usage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::SHADER_DEVICE_ADDRESS;
         let buffer = context.buffer("scratch of builds", size + alignment, usage, Location::Device)?;

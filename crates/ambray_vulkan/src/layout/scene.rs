@@ -39,6 +39,14 @@ structures! {
         shapes: u64,
         /// [`ShapeInstance`]; instance numbers of shapes go on where those of meshes end.
         shape_instances: u64,
+        /// `instances` as they were in the last frame.
+        previous_instances: u64,
+        /// `shape_instances` as they were in the last frame.
+        previous_shape_instances: u64,
+        /// `vec3` of each vertex of a deforming mesh in the last frame; 0 if nothing has moved since.
+        previous_positions: u64,
+        /// `vec3` of each vertex of a deforming mesh that has a normal, in the last frame; 0 if nothing has moved since.
+        previous_normals: u64,
         /// Number of instances with a mesh.
         mesh_instances: u32,
         /// Unused.
@@ -85,6 +93,10 @@ structures! {
         uv_sets: u32,
         /// Index of the material.
         material: u32,
+        /// In `previous_positions`; none if it does not deform.
+        previous_vertex: u32,
+        /// In `previous_normals`; none if it does not deform or has no normals.
+        previous_normal: u32,
     }
 
     /// Use of a texture by a material.

@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::{Interface, Programs, TraceMode};
-use crate::{Result, layout::Specialization};
+use crate::{Result, layout::Specialization, motion::MotionPrograms};
 
 /// Programs of so many settings are kept.
 const KEPT: usize = 64;
@@ -13,6 +13,7 @@ const KEPT: usize = 64;
 pub(crate) struct ProgramCache {
     /// The last used comes first.
     programs: Mutex<Vec<Entry>>,
+    motion: Mutex<Option<Arc<MotionPrograms>>>,
 }
 
 type Entry = ((TraceMode, Specialization), Arc<Programs>);
@@ -35,6 +36,17 @@ impl ProgramCache {
         let programs = Arc::clone(&entry.1);
         kept.insert(0, entry);
         kept.truncate(KEPT);
+        Ok(programs)
+    }
+
+    /// Programs that move scenes.
+    pub(crate) fn motion(&self, interface: &Arc<Interface>) -> Result<Arc<MotionPrograms>> {
+        let mut kept = self.motion.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(programs) = &*kept {
+            return Ok(Arc::clone(programs));
+        }
+        let programs = Arc::new(MotionPrograms::new(interface)?);
+        *kept = Some(Arc::clone(&programs));
         Ok(programs)
     }
 }

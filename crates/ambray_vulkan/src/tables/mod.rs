@@ -1,23 +1,36 @@
 //! The scene in tables on the device: what shaders read to turn hits into surfaces.
 
+mod placed;
+mod previous;
+mod vertices;
+
 use std::sync::Arc;
 
 use ambray_core::shape::Shape;
 use ambray_scene::{
-    AlphaMode, Filter, Image, Material, Scene, Texture, TextureRef, Wrap, surface::normal_matrix,
-    texture::srgb_values,
+    AlphaMode, Filter, Image, Material, Scene, Texture, TextureRef, Wrap, texture::srgb_values,
 };
 use ash::vk::BufferUsageFlags;
 use bytemuck::Pod;
-use glam::{Affine2, Affine3A, Mat3A};
+use glam::Affine2;
 
 use crate::{
     Buffer, Context, Placement, Result, VulkanError,
     layout::{self, NONE, SceneTables},
 };
 
+pub(crate) use placed::{Change, PlacedTable};
+pub(crate) use previous::Previous;
+pub(crate) use vertices::deforming_meshes;
+
+use vertices::Vertices;
+
+/// Usages of every table. Tables that move are copied, too.
 const TABLE: BufferUsageFlags = BufferUsageFlags::from_raw(
-    BufferUsageFlags::STORAGE_BUFFER.as_raw() | BufferUsageFlags::SHADER_DEVICE_ADDRESS.as_raw(),
+    BufferUsageFlags::STORAGE_BUFFER.as_raw()
+        | BufferUsageFlags::SHADER_DEVICE_ADDRESS.as_raw()
+        | BufferUsageFlags::TRANSFER_SRC.as_raw()
+        | BufferUsageFlags::TRANSFER_DST.as_raw(),
 );
 
 /// All tables of a scene, and the table of their addresses.
@@ -25,6 +38,15 @@ const TABLE: BufferUsageFlags = BufferUsageFlags::from_raw(
 pub(crate) struct Tables {
     /// Keeps what the addresses refer to.
     _tables: Vec<Buffer>,
+    pub(crate) instances: PlacedTable<layout::Instance>,
+    pub(crate) shape_instances: PlacedTable<layout::ShapeInstance>,
+    /// Vertex attributes that deformation writes.
+    pub(crate) positions: Buffer,
+    pub(crate) normals: Buffer,
+    pub(crate) tangents: Buffer,
+    /// Where the attributes of each mesh are.
+    pub(crate) meshes: Vec<layout::Mesh>,
+    content: SceneTables,
     addresses: Buffer,
 }
 
@@ -38,6 +60,12 @@ impl Tables {
     ) -> Result<Self> {
         let mut upload = Upload { context, tables: Vec::new() };
         let vertices = Vertices::of(scene)?;
+        let moving_input = TABLE | BufferUsageFlags::ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_KHR;
+        let positions = context.upload("positions", moving_input, &vertices.positions)?;
+        let normals = context.upload("normals", TABLE, &vertices.normals)?;
+        let tangents = context.upload("tangents", TABLE, &vertices.tangents)?;
+        let instances = PlacedTable::new(context, "instances", placed::instances(scene))?;
+        let shape_instances = PlacedTable::new(context, "placed shapes", placed::shape_instances(scene))?;
         let images = Images::of(&scene.images)?;
         let fields = (scene.shapes.iter())
             .map(|shape| match shape {
@@ -47,10 +75,10 @@ impl Tables {
             .collect::<Result<Vec<_>>>()?;
         let shapes: Vec<_> = scene.shapes.iter().zip(fields).map(|(s, field)| shape(s, field)).collect();
         let textures: Vec<_> = scene.textures.iter().map(|t| texture(t, scene, &images.first)).collect();
-        let tables = SceneTables {
+        let content = SceneTables {
             placements: upload.table("placements", &placements.iter().map(placement).collect::<Vec<_>>())?,
             refs: upload.table("triangle references", refs)?,
-            instances: upload.table("instances", &instances(scene))?,
+            instances: instances.address(),
             meshes: upload.table("meshes", &vertices.meshes)?,
             materials: upload
                 .table("materials", &scene.materials.iter().map(material).collect::<Vec<_>>())?,
@@ -58,25 +86,45 @@ impl Tables {
             levels: upload.table("image levels", &images.levels)?,
             texels: upload.table("texels", &images.texels)?,
             srgb: upload.table("sRGB values", srgb_values())?,
-            positions: upload.table("positions", &vertices.positions)?,
-            normals: upload.table("normals", &vertices.normals)?,
-            tangents: upload.table("tangents", &vertices.tangents)?,
+            positions: positions.address(),
+            normals: normals.address(),
+            tangents: tangents.address(),
             uvs: upload.table("texture coordinates", &vertices.uvs)?,
             colors: upload.table("vertex colours", &vertices.colors)?,
             triangles: upload.table("triangles", &vertices.triangles)?,
             shapes: upload.table("shapes", &shapes)?,
-            shape_instances: upload.table("placed shapes", &shape_instances(scene))?,
+            shape_instances: shape_instances.address(),
+            // Nothing has moved: the last frame was rendered with this.
+            previous_instances: instances.address(),
+            previous_shape_instances: shape_instances.address(),
+            previous_positions: 0,
+            previous_normals: 0,
             mesh_instances: scene.instances.len() as u32,
             padding: 0,
         };
-        upload.table("tables", &[tables])?;
-        let addresses = upload.tables.pop().expect("just made");
-        Ok(Self { _tables: upload.tables, addresses })
+        let addresses = context.upload("tables", TABLE, &[content])?;
+        Ok(Self {
+            _tables: upload.tables,
+            instances,
+            shape_instances,
+            positions,
+            normals,
+            tangents,
+            meshes: vertices.meshes,
+            content,
+            addresses,
+        })
     }
 
-    /// Device address of the [`SceneTables`].
+    /// Device address of the [`SceneTables`], in which nothing has moved since the last frame.
     pub(crate) const fn address(&self) -> u64 {
         self.addresses.address()
+    }
+
+    /// What changes in the tables of placements with those of `scene`, the scene of these tables at another pose.
+    pub(crate) fn changes(&self, scene: &Scene) -> (Change<layout::Instance>, Change<layout::ShapeInstance>) {
+        let shapes = placed::shape_instances(scene);
+        (self.instances.change(&placed::instances(scene)), self.shape_instances.change(&shapes))
     }
 }
 
@@ -93,44 +141,6 @@ impl Upload<'_> {
         let address = buffer.address();
         self.tables.push(buffer);
         Ok(address)
-    }
-}
-
-/// Vertex attributes and triangles of all meshes, one after the other.
-#[derive(Default)]
-struct Vertices {
-    meshes: Vec<layout::Mesh>,
-    positions: Vec<[f32; 3]>,
-    normals: Vec<[f32; 3]>,
-    tangents: Vec<[f32; 4]>,
-    uvs: Vec<[f32; 2]>,
-    colors: Vec<[f32; 4]>,
-    triangles: Vec<[u32; 3]>,
-}
-
-impl Vertices {
-    fn of(scene: &Scene) -> Result<Self> {
-        let mut all = Self::default();
-        for mesh in &scene.meshes {
-            all.meshes.push(layout::Mesh {
-                first_triangle: place("triangles", &all.triangles)?,
-                first_vertex: place("vertices", &all.positions)?,
-                vertices: mesh.positions.len() as u32,
-                first_normal: place_of("normals", &all.normals, mesh.normals.is_empty())?,
-                first_tangent: place_of("tangents", &all.tangents, mesh.tangents.is_empty())?,
-                first_color: place_of("vertex colours", &all.colors, mesh.colors.is_empty())?,
-                first_uv: place("texture coordinates", &all.uvs)?,
-                uv_sets: mesh.uvs.len() as u32,
-                material: mesh.material,
-            });
-            all.positions.extend(mesh.positions.iter().map(|v| v.to_array()));
-            all.normals.extend(mesh.normals.iter().map(|v| v.to_array()));
-            all.tangents.extend(mesh.tangents.iter().map(|v| v.to_array()));
-            all.uvs.extend(mesh.uvs.iter().flatten().map(|v| v.to_array()));
-            all.colors.extend(mesh.colors.iter().map(|v| v.to_array()));
-            all.triangles.extend(&mesh.triangles);
-        }
-        Ok(all)
     }
 }
 
@@ -174,39 +184,6 @@ fn place<T>(what: &str, table: &[T]) -> Result<u32> {
 /// As [`place`]; none if there are no entries.
 fn place_of<T>(what: &str, table: &[T], is_empty: bool) -> Result<u32> {
     if is_empty { Ok(NONE) } else { place(what, table) }
-}
-
-fn columns(m: &Affine3A) -> [[f32; 3]; 4] {
-    m.to_cols_array_2d()
-}
-
-fn instances(scene: &Scene) -> Vec<layout::Instance> {
-    let instance = |instance: &ambray_scene::Instance| {
-        let m = instance.world_from_object.matrix3;
-        layout::Instance {
-            world_from_object: columns(&instance.world_from_object),
-            normal_from_object: normal_columns(m),
-            side: if m.determinant() < 0.0 { -1.0 } else { 1.0 },
-            mesh: instance.mesh,
-        }
-    };
-    scene.instances.iter().map(instance).collect()
-}
-
-fn normal_columns(m: Mat3A) -> [[f32; 3]; 3] {
-    normal_matrix(m).to_cols_array_2d()
-}
-
-fn shape_instances(scene: &Scene) -> Vec<layout::ShapeInstance> {
-    let instance = |placed: &ambray_scene::ShapeInstance| layout::ShapeInstance {
-        world_from_object: columns(&placed.world_from_object),
-        object_from_world: columns(&placed.world_from_object.inverse()),
-        normal_from_object: normal_columns(placed.world_from_object.matrix3),
-        reach: placed.reach(&scene.shapes[placed.shape as usize]),
-        shape: placed.shape,
-        material: placed.material,
-    };
-    scene.shape_instances.iter().map(instance).collect()
 }
 
 fn shape(shape: &Shape, field_address: u64) -> layout::Shape {
