@@ -131,6 +131,14 @@ impl Rate {
         (u64::from(number) * self.seconds) as f64 / self.frames as f64
     }
 
+    /// The rate of every `step`-th frame.
+    #[must_use]
+    pub fn every(&self, step: u32) -> Self {
+        let seconds = self.seconds * u64::from(step);
+        let divisor = common_divisor(self.frames, seconds);
+        Self { frames: self.frames / divisor, seconds: seconds / divisor }
+    }
+
     /// How many frames show `seconds`, rounded to the nearest; at least one.
     #[must_use]
     pub fn frames_in(&self, seconds: f64) -> u32 {
@@ -248,6 +256,7 @@ mod tests {
             ["30", "23.976", "30000/1001", "0.5"].map(|text| rate(text).to_string()),
             ["30", "23.976", "30000/1001", "0.5"]
         );
+        assert_eq!(rate("30").every(5), rate("6"));
         assert_eq!(rate("25").time(50), 2.0);
         assert_eq!(rate("30000/1001").time(30000), 1001.0);
         assert_eq!((rate("30").frames_in(1.99), rate("30").frames_in(0.0)), (60, 1));

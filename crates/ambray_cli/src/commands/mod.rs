@@ -11,6 +11,7 @@ pub mod query;
 pub mod render;
 mod sequence;
 mod thin_cost;
+mod video;
 
 use ambray::{
     Control, RenderError, Renderer, RendererOptions,

@@ -6,12 +6,13 @@ use ambray::{Renderer, RendererOptions, scene::Scene, settings::Settings};
 use anyhow::bail;
 use serde::Serialize;
 
-use super::{check_animation, check_memory, control, explained, following, renderer, sequence};
+use super::{check_animation, check_memory, control, explained, following, renderer, sequence, video};
 use crate::{
     args::{Grouping, RenderArgs},
     output::{
         Plan,
         atomic::{Batch, Target},
+        video::Kind,
     },
     progress::Progress,
     report::{self, RenderReport, SceneReport},
@@ -25,9 +26,11 @@ const DEFAULT_STEM: &str = "ambray";
 /// Renders a scene.
 pub fn run(args: &RenderArgs) -> anyhow::Result<()> {
     let request = Request::new(args)?;
-    match args.sequence.frames {
-        Some(frames) => sequence::run(&request, frames),
-        None => still(&request),
+    let video = args.output.as_deref().and_then(|path| Some((Kind::of(path)?, path)));
+    match (video, args.sequence.frames) {
+        (Some((kind, path)), _) => video::run(&request, kind, path),
+        (None, Some(frames)) => sequence::run(&request, frames),
+        (None, None) => still(&request),
     }
 }
 

@@ -59,7 +59,7 @@ pub(super) fn run(request: &Request<'_>, frames: Frames) -> anyhow::Result<()> {
     let mut batch = Batch::default();
     request.add_saved(&mut batch)?;
     batch.commit()?;
-    request.saved.iter().for_each(|saved| tally.wrote(saved.name()));
+    request.saved.iter().for_each(|saved| tally.wrote(saved.name(), Default::default()));
     drop(graceful);
     let report = tally.report(scene, &renderer, settings, &timeline, start.elapsed());
     request.tell(&report, &|| report.text(frames, &timeline.rate().to_string()), false)

@@ -125,6 +125,40 @@ fn temporary_in(folder: &Path) -> std::io::Result<NamedTempFile> {
 pub trait Output: Write + Seek {}
 impl<T: Write + Seek> Output for T {}
 
+/// A file that is being written beside its destination. What is not put into a [`Batch`] vanishes.
+#[derive(Debug)]
+pub struct Pending {
+    temporary: NamedTempFile,
+    destination: PathBuf,
+    _registered: signals::Temporary,
+}
+
+impl Pending {
+    /// Begins the file at `path`.
+    pub fn new(path: &Path) -> anyhow::Result<Self> {
+        if fs::metadata(path).is_ok_and(|metadata| !metadata.is_file()) {
+            bail!("is no plain file");
+        }
+        // A link keeps being one: the file that it points to is replaced.
+        let destination = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        let temporary = temporary_in(folder_of(&destination))?;
+        let registered = signals::Temporary::register(temporary.path());
+        Ok(Self { temporary, destination, _registered: registered })
+    }
+
+    /// The file, to write to.
+    #[must_use]
+    pub fn file(&self) -> &File {
+        self.temporary.as_file()
+    }
+
+    /// Where the file is meanwhile, for another program that writes it.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        self.temporary.path()
+    }
+}
+
 /// Outputs of one command. What is not [committed](Self::commit) vanishes.
 #[derive(Debug, Default)]
 pub struct Batch {
@@ -133,7 +167,7 @@ pub struct Batch {
 
 #[derive(Debug)]
 enum Staged {
-    File { temporary: NamedTempFile, destination: PathBuf, _registered: signals::Temporary },
+    File(Pending),
     // Stdout and devices cannot be renamed to: the bytes wait in memory.
     Bytes { bytes: Vec<u8>, target: Target },
 }
@@ -150,10 +184,15 @@ impl Batch {
         Ok(())
     }
 
+    /// Adds a file that is complete.
+    pub fn push(&mut self, pending: Pending) {
+        self.staged.push(Staged::File(pending));
+    }
+
     /// Makes all outputs appear.
     pub fn commit(self) -> anyhow::Result<()> {
         self.staged.into_iter().try_for_each(|staged| match staged {
-            Staged::File { temporary, destination, .. } => {
+            Staged::File(Pending { temporary, destination, .. }) => {
                 let context = || format!("output {}", destination.display());
                 temporary.persist(&destination).map(drop).map_err(|e| e.error).with_context(context)
             }
@@ -174,15 +213,12 @@ fn stage(
     match target {
         Target::File(path) if fs::metadata(path).is_ok_and(|m| !m.is_file()) => stage_bytes(target, write),
         Target::File(path) => {
-            // A link keeps being one: the file that it points to is replaced.
-            let destination = fs::canonicalize(path).unwrap_or_else(|_| path.clone());
-            let temporary = temporary_in(folder_of(&destination))?;
-            let registered = signals::Temporary::register(temporary.path());
-            let mut buffered = BufWriter::new(temporary.as_file());
+            let pending = Pending::new(path)?;
+            let mut buffered = BufWriter::new(pending.file());
             write(&mut buffered)?;
             buffered.flush()?;
             drop(buffered);
-            Ok(Staged::File { temporary, destination, _registered: registered })
+            Ok(Staged::File(pending))
         }
         Target::Stdout => stage_bytes(target, write),
     }

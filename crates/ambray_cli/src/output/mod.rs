@@ -8,6 +8,7 @@ pub mod head;
 pub mod numbering;
 pub mod png;
 pub mod tone_map;
+pub mod video;
 
 use std::{
     path::{Path, PathBuf},
@@ -168,7 +169,10 @@ fn decide_format(target: &Target, format: Option<Format>) -> anyhow::Result<Form
         (Some("png"), None) => Ok(Format::Png8),
         (Some("exr"), None) => Ok(Format::Exr),
         (_, None) => Err(with_hint(
-            anyhow!("output {}: the extension says no format; allowed are .png and .exr", path.display()),
+            anyhow!(
+                "output {}: the extension says no format; allowed are .png and .exr, .gif, .mp4, .webm and .webp",
+                path.display()
+            ),
             "or choose a format with --format png8, png16 or exr",
         )),
     }

@@ -47,7 +47,8 @@ pub fn write(
     Ok(writer.finish()?)
 }
 
-fn samples(picture: &Picture, bits: Bits) -> Vec<u8> {
+/// The values of `picture` as bytes, row by row from the top, most significant byte first.
+pub(super) fn samples(picture: &Picture, bits: Bits) -> Vec<u8> {
     match picture {
         Picture::Grey(values) => quantize(values.iter().copied(), bits),
         Picture::Rgb { pixels, .. } => {

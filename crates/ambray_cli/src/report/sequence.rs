@@ -123,8 +123,9 @@ impl Tally {
         });
     }
 
-    /// Counts a file that was written besides the frames, such as a video.
-    pub fn wrote(&mut self, output: String) {
+    /// Counts a file that was written besides the frames, such as a video, whose end took `time`.
+    pub fn wrote(&mut self, output: String, time: Duration) {
+        self.write_time += time;
         self.outputs.push(output);
     }
 

@@ -9,13 +9,13 @@ use std::{
 
 use super::Bench;
 
-fn signal(child: &Child, name: &str) {
+pub(super) fn signal(child: &Child, name: &str) {
     let status = Command::new("kill").args([name, &child.id().to_string()]).status().expect("kill");
     assert!(status.success());
 }
 
 /// Waits for the end, at most a minute.
-fn end(mut child: Child) -> Option<i32> {
+pub(super) fn end(mut child: Child) -> Option<i32> {
     let start = Instant::now();
     while start.elapsed() < Duration::from_secs(60) {
         if let Some(status) = child.try_wait().expect("a child") {
@@ -54,4 +54,19 @@ fn ctrl_c_ends_waiting_for_points() {
     signal(&child, "-INT");
     assert_eq!(end(child), Some(130));
     assert_eq!(bench.files(), [""; 0]);
+}
+
+#[test]
+fn ctrl_c_keeps_the_finished_frames_of_a_sequence() {
+    let bench = Bench::animated();
+    let line = ["render", "moving.gltf", "--size=64x36", "--frames=0..100000", "-o", "out/#.png"];
+    let child = bench.command(&line).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("start");
+    thread::sleep(Duration::from_millis(1500));
+    signal(&child, "-INT");
+    let output = child.wait_with_output().expect("end");
+    assert_eq!(output.status.code(), Some(130));
+    let (made, told) = (bench.made(), String::from_utf8_lossy(&output.stderr).into_owned());
+    assert!(!made.is_empty() && made.iter().all(|name| name.ends_with(".png")), "{made:?}");
+    assert!(told.contains(&format!("{} of 100000 frames are finished; --resume", made.len())), "{told}");
+    made.iter().for_each(|name| drop(super::Png::of(&bench.read(name))));
 }

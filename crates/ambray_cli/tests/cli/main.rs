@@ -11,6 +11,7 @@ mod options;
 mod outputs;
 mod query;
 mod sequence;
+mod video;
 
 use std::{
     fs,
