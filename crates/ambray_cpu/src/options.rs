@@ -1,10 +1,12 @@
 //! What the user of the tracer may choose.
 
+use ambray_scene::animation::Updates;
+
 use crate::Isa;
 
 /// How a [`Tracer`](crate::Tracer) is built. No choice but [`bake_budget`](Self::bake_budget) changes any result, only build
 /// time and speed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BuildOptions {
     /// Effort spent on the tree.
     pub quality: Quality,
@@ -22,6 +24,8 @@ pub struct BuildOptions {
     /// alone. Meshes with the fewest triangles over all their instances are baked first. Hits on an instance agree
     /// both ways up to the rounding of its transform.
     pub bake_budget: u64,
+    /// What is done with the trees of meshes that deform, at each new pose.
+    pub updates: Updates,
 }
 
 impl BuildOptions {
@@ -47,7 +51,14 @@ impl BuildOptions {
     }
 
     const fn with_quality(quality: Quality) -> Self {
-        Self { quality, isa: None, width: None, packets: true, bake_budget: Self::BAKE_BUDGET }
+        Self {
+            quality,
+            isa: None,
+            width: None,
+            packets: true,
+            bake_budget: Self::BAKE_BUDGET,
+            updates: Updates::DEFAULT,
+        }
     }
 }
 

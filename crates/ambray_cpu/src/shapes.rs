@@ -5,13 +5,13 @@
 
 use ambray_core::shape::Shape;
 use ambray_core::trace::{Hit, Ray};
-use ambray_scene::Scene;
+use ambray_scene::{Motion, Scene};
 
 use crate::AlphaTest;
 use crate::bvh::build;
 use crate::bvh::layout::{Bounds, Child, Tlas};
 use crate::kernel;
-use crate::tracer::place;
+use crate::levels::place;
 
 /// Children of a node: the boxes are tested one by one, so few of them at a time.
 const WIDTH: usize = 8;
@@ -22,27 +22,43 @@ pub(crate) struct Shapes {
     shapes: Vec<Shape>,
     tree: Tlas<WIDTH>,
     stack: usize,
+    /// Whether any of them moves.
+    moving: bool,
 }
 
 impl Shapes {
-    /// `None` if no shape can be hit. Instances whose placement cannot be inverted are dropped.
+    /// `None` if there are no shapes. Instances whose placement cannot be inverted are dropped, those that move only until
+    /// the next pose.
     pub(crate) fn build(scene: &Scene) -> Option<Self> {
+        if scene.shape_instances.is_empty() {
+            return None;
+        }
+        let moving = scene.rig.is_some() && scene.shape_instances.iter().any(|i| i.motion != Motion::Static);
+        let mut shapes = Self { shapes: scene.shapes.clone(), tree: Tlas::default(), stack: 0, moving };
+        shapes.place(scene);
+        Some(shapes)
+    }
+
+    /// Moves the shapes to where `scene` has them.
+    pub(crate) fn update(&mut self, scene: &Scene) {
+        if self.moving {
+            self.place(scene);
+        }
+    }
+
+    fn place(&mut self, scene: &Scene) {
         let first = u32::try_from(scene.instances.len()).expect("instances have 32-bit numbers");
         let (mut placed, mut boxes) = (Vec::new(), Vec::new());
         for (index, instance) in (first..).zip(&scene.shape_instances) {
-            let (lo, hi) = scene.shapes[instance.shape as usize].bounds();
+            let (lo, hi) = self.shapes[instance.shape as usize].bounds();
             let placement = instance.world_from_object;
             if let Some((one, world)) = place(instance.shape, index, placement, Bounds { lo, hi }) {
                 placed.push(one);
                 boxes.push(world);
             }
         }
-        if placed.is_empty() {
-            return None;
-        }
-        let tree: Tlas<WIDTH> = build::tlas(placed, &boxes);
-        let stack = kernel::stack_for(tree.depth, WIDTH);
-        Some(Self { shapes: scene.shapes.clone(), tree, stack })
+        self.tree = build::tlas(placed, &boxes);
+        self.stack = kernel::stack_for(self.tree.depth, WIDTH);
     }
 
     /// Instances that can be hit, nodes of the tree, its depth and its memory in bytes.
@@ -89,7 +105,7 @@ impl Shapes {
     ) -> Hit {
         let mut best = Hit { t: limit, ..Hit::MISS };
         let Some(slabs) = kernel::ray::Prepared::new(ray.origin, ray.direction) else { return Hit::MISS };
-        if limit.is_nan() || limit <= 0.0 {
+        if limit.is_nan() || limit <= 0.0 || self.tree.nodes.is_empty() {
             return Hit::MISS;
         }
         stack.clear();

@@ -4,8 +4,8 @@ mod common;
 
 use ambray_core::trace::{Hit, Ray, Trace};
 use ambray_cpu::{AlphaTest, BuildOptions, Isa, Opaque, Quality, Tracer, Width};
-use ambray_scene::{Instance, Scene};
-use common::{BruteForce, Random, scene, soup};
+use ambray_scene::{Instance, Scene, animation::Updates};
+use common::{BruteForce, Random, random_rays, random_triangles, scene, soup};
 use glam::{Affine3A, Mat3, Quat, Vec3};
 
 /// All combinations of options that this machine can run.
@@ -16,7 +16,8 @@ fn all_options() -> Vec<BuildOptions> {
             for width in Width::ALL {
                 for packets in [false, true] {
                     let (isa, width, bake_budget) = (Some(isa), Some(width), 0);
-                    all.push(BuildOptions { quality, isa, width, packets, bake_budget });
+                    let updates = Updates::default();
+                    all.push(BuildOptions { quality, isa, width, packets, bake_budget, updates });
                 }
             }
         }
@@ -40,85 +41,6 @@ fn check<A: AlphaTest>(scene: &Scene, rays: &[Ray], alpha: &A) {
             assert_eq!(blocked[i], expected[i].is_hit(), "{options:?}, any, ray {i}: {:?}", rays[i]);
         }
     }
-}
-
-/// Triangles of many shapes in [-1, 1]³.
-fn random_triangles(random: &mut Random, count: usize) -> Vec<[Vec3; 3]> {
-    let mut triangles: Vec<[Vec3; 3]> = Vec::new();
-    while triangles.len() < count {
-        let (p, q, r) = (random.cube(), random.cube(), random.cube());
-        let axis = random.below(3) as usize;
-        triangles.push(match random.below(10) {
-            0..=3 => [p, p + q * 0.2, p + r * 0.2],
-            4 => [p, q, r],
-            5 => [p, p + q, p + q + r * 1e-5], // needle
-            6 => {
-                let flat = |mut v: Vec3| {
-                    v[axis] = p[axis];
-                    v
-                };
-                [p, flat(q), flat(r)]
-            }
-            7 => [p, q, p + (q - p) * 0.5], // collinear, or nearly so
-            8 => [p, p, q],
-            _ => triangles.get(random.below(count as u32) as usize).copied().unwrap_or([p, q, r]),
-        });
-    }
-    triangles
-}
-
-/// Rays of many kinds about the triangles, in packets of 16 and alone.
-fn random_rays(random: &mut Random, triangles: &[[Vec3; 3]], count: usize) -> Vec<Ray> {
-    let mut rays = Vec::new();
-    let on_triangle = |random: &mut Random| {
-        let [a, b, c] = triangles[random.below(triangles.len() as u32) as usize];
-        let (mut u, mut v) = (random.unit(), random.unit());
-        match random.below(4) {
-            0 => (u, v) = (0.0, 0.0),
-            1 => v = 0.0,
-            _ => {}
-        }
-        if u + v > 1.0 {
-            (u, v) = (1.0 - u, 1.0 - v);
-        }
-        a + (b - a) * u + (c - a) * v
-    };
-    let kinds = 6;
-    for kind in 0..kinds * count / 16 {
-        let shared = match random.below(3) {
-            0 => random.direction(),
-            1 => {
-                let mut d = Vec3::ZERO;
-                d[random.below(3) as usize] = if random.below(2) == 0 { 1.0 } else { -1.0 };
-                d
-            }
-            _ => {
-                let mut d = random.direction();
-                d[random.below(3) as usize] = if random.below(2) == 0 { 0.0 } else { -0.0 };
-                d.normalize_or(Vec3::X)
-            }
-        };
-        let start = random.cube();
-        for _ in 0..16 {
-            let t_max = [0.1, 1.0, f32::INFINITY][random.below(3) as usize];
-            let (origin, direction) = match kind % kinds {
-                0 => (random.cube() * 1.5, random.direction()),
-                1 => (random.cube() * 1.5, shared),
-                2 => (start + random.cube() * 0.05, shared),
-                3 => (on_triangle(random), random.direction()), // starts on a surface
-                4 => {
-                    let origin = random.cube() * 2.0;
-                    (origin, (on_triangle(random) - origin).normalize_or(Vec3::Y)) // corners and edges
-                }
-                _ => {
-                    let [a, b, _] = triangles[random.below(triangles.len() as u32) as usize];
-                    (a - (b - a), (b - a).normalize_or(Vec3::Z)) // along an edge
-                }
-            };
-            rays.push(Ray { origin, t_max, direction, seed: random.bits() });
-        }
-    }
-    rays
 }
 
 fn scaled(rays: &[Ray], scale: f32, offset: Vec3) -> Vec<Ray> {
@@ -277,7 +199,7 @@ fn baked_instances() {
         let options = BuildOptions { bake_budget, ..BuildOptions::default() };
         let tracer = Tracer::build(&shared, Opaque, options);
         assert_eq!(tracer.stats().baked_instances, baked);
-        assert_eq!(tracer.stats().shared_instances, 32 - baked);
+        assert_eq!(tracer.stats().placed_instances, 32 - baked);
         let mut hits = vec![Hit::MISS; rays.len()];
         tracer.closest_hits(&rays, &mut hits);
         if baked > 0 {
@@ -300,5 +222,5 @@ fn baking_keeps_to_its_budget() {
     scene.instances.push(scene.instances[0]);
     let tracer = Tracer::build(&scene, Opaque, BuildOptions::default());
     assert_eq!(tracer.stats().baked_instances, 2);
-    assert_eq!(tracer.stats().shared_instances, copies as usize + 1);
+    assert_eq!(tracer.stats().placed_instances, copies as usize + 1);
 }

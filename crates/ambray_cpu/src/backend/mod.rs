@@ -5,6 +5,7 @@
 //! and composes row by row. Every pixel is a pure function of the scene, the settings and its place, so the picture
 //! does not depend on the number of threads.
 
+mod motion;
 mod pass1;
 mod pass2;
 mod points;
@@ -22,14 +23,14 @@ use std::{
 
 use ambray_core::{
     control::{Cancelled, Control},
-    frame::{Frame, FrameStats, PoseStats},
+    frame::{Frame, FrameStats},
     gather::GatherParams,
     query::{QueryPoint, QueryResult},
     sampling::SampleSets,
     settings::{Settings, Temporal},
     view::View,
 };
-use ambray_scene::{Scene, animation::Pose, surface::Surfaces};
+use ambray_scene::{Scene, surface::Surfaces};
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 
 pub use world::CpuWorld;
@@ -54,9 +55,10 @@ pub enum BackendError {
 #[derive(Debug)]
 pub struct CpuBackend {
     world: CpuWorld,
-    options: BuildOptions,
     /// Surfaces at the pose of the last frame that was rendered, if the scene has moved since: where motion vectors begin.
     previous: Option<Arc<Surfaces>>,
+    /// A scene to be moved to the next pose.
+    spare: Option<Arc<Scene>>,
     /// Whether a frame of the current pose was rendered.
     rendered: AtomicBool,
     /// What the last frame left for the next one, where light is accumulated.
@@ -71,8 +73,8 @@ impl CpuBackend {
     pub fn new(scene: Arc<Scene>, options: BuildOptions) -> Self {
         Self {
             world: CpuWorld::new(scene, options),
-            options,
             previous: None,
+            spare: None,
             rendered: AtomicBool::new(false),
             history: Mutex::default(),
             pool: Mutex::default(),
@@ -83,23 +85,6 @@ impl CpuBackend {
     #[must_use]
     pub const fn world(&self) -> &CpuWorld {
         &self.world
-    }
-
-    /// Moves the scene to `pose`, which is of its rig.
-    pub fn pose(&mut self, pose: &Pose, threads: usize) -> Result<PoseStats, BackendError> {
-        let start = Instant::now();
-        let pool = self.pool(threads)?;
-        if *self.rendered.get_mut() {
-            *self.rendered.get_mut() = false;
-            self.previous = Some(Arc::clone(self.world.surfaces()));
-        }
-        let mut scene = Scene::clone(self.world.surfaces().scene());
-        scene.place(pose);
-        pool.install(|| scene.deform(pose));
-        let deformation = start.elapsed();
-        self.world = pool.install(|| CpuWorld::new(Arc::new(scene), self.options));
-        let total = start.elapsed();
-        Ok(PoseStats { deformation, bottom_level: total - deformation, total, ..PoseStats::default() })
     }
 
     /// Renders a frame. With [`Temporal::On`] it continues the last one.

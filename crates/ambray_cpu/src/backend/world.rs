@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use ambray_core::frame::PoseStats;
 use ambray_core::trace::{Diffuse, Hit, Motion, Ray, Trace, World};
 use ambray_scene::{
     Scene,
@@ -21,6 +22,12 @@ impl CpuWorld {
     pub(super) fn new(scene: Arc<Scene>, options: BuildOptions) -> Self {
         let surfaces = Arc::new(Surfaces::new(Arc::clone(&scene)));
         Self { tracer: Tracer::build(&scene, Arc::clone(&surfaces), options), surfaces }
+    }
+
+    /// Moves everything to where `scene` has it: the same scene at another pose.
+    pub(super) fn update(&mut self, scene: Arc<Scene>) -> PoseStats {
+        self.surfaces = Arc::new(self.surfaces.moved_to(scene));
+        self.tracer.update(self.surfaces.scene(), Arc::clone(&self.surfaces))
     }
 
     /// The trees.

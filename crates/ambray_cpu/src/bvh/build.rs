@@ -1,5 +1,6 @@
 //! From triangles and instances to trees.
 
+use ambray_scene::Mesh;
 use glam::Vec3;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
@@ -21,23 +22,61 @@ pub(crate) struct Triangle {
     pub(crate) masked: bool,
 }
 
-impl Triangle {
-    /// Whether rays can hit it: all corners within [`LARGEST`], and not of zero area (in f64; coincident or collinear
-    /// corners). Triangles that cannot be hit are dropped.
-    pub(crate) fn is_hittable(&self) -> bool {
-        let [a, b, c] = self.corners;
-        let within = |p: Vec3| p.abs().max_element() <= LARGEST && p.is_finite();
-        let area = || {
-            let (a, b, c) = (a.as_dvec3(), b.as_dvec3(), c.as_dvec3());
-            (b - a).cross(c - a).abs().max_element()
-        };
-        within(a) && within(b) && within(c) && area() > 0.0
-    }
+/// Whether rays can hit a triangle: all corners within [`LARGEST`], and not of zero area (in f64; coincident or collinear
+/// corners).
+pub(crate) fn is_hittable(&[a, b, c]: &[Vec3; 3]) -> bool {
+    let area = || {
+        let (a, b, c) = (a.as_dvec3(), b.as_dvec3(), c.as_dvec3());
+        (b - a).cross(c - a).abs().max_element()
+    };
+    is_within(a) && is_within(b) && is_within(c) && area() > 0.0
+}
+
+/// Whether `p` is finite and within [`LARGEST`].
+fn is_within(p: Vec3) -> bool {
+    p.abs().max_element() <= LARGEST && p.is_finite()
 }
 
 /// Binary tree in post-order: children stand before their parent, the root is last.
 pub(crate) struct Binary {
     pub(crate) nodes: Vec<BinaryNode>,
+}
+
+impl Binary {
+    /// Puts `primitives` without boxes beside what is there, halved again and again in their order.
+    fn append(&mut self, primitives: &[u32]) {
+        if primitives.is_empty() {
+            return;
+        }
+        let before = self.nodes.len();
+        self.halve(primitives);
+        if before > 0 {
+            self.join(before - 1, self.nodes.len() - 1);
+        }
+    }
+
+    fn halve(&mut self, primitives: &[u32]) {
+        if let [primitive] = primitives {
+            let children = [BinaryNode::LEAF, *primitive];
+            self.nodes.push(BinaryNode { bounds: Bounds::EMPTY, leaves: 1, children });
+            return;
+        }
+        let (left, right) = primitives.split_at(primitives.len() / 2);
+        self.halve(left);
+        let middle = self.nodes.len() - 1;
+        self.halve(right);
+        self.join(middle, self.nodes.len() - 1);
+    }
+
+    /// Puts a parent above two nodes.
+    fn join(&mut self, left: usize, right: usize) {
+        let (l, r) = (self.nodes[left], self.nodes[right]);
+        self.nodes.push(BinaryNode {
+            bounds: l.bounds.union(r.bounds),
+            leaves: l.leaves + r.leaves,
+            children: [left as u32, right as u32],
+        });
+    }
 }
 
 /// Node of a [`Binary`] tree.
@@ -77,15 +116,15 @@ fn binary(boxes: &[Bounds], quality: Quality) -> Binary {
     ReinsertionOptimizer::default().run(&mut tree, ratio, None);
 
     // Post-order without recursion: a node is visited again, after its children, with `expanded` set.
-    let mut nodes: Vec<BinaryNode> = Vec::with_capacity(tree.nodes.len());
-    let mut finished: Vec<u32> = Vec::new();
+    let mut binary = Binary { nodes: Vec::with_capacity(tree.nodes.len()) };
+    let mut finished: Vec<usize> = Vec::new();
     let mut pending = vec![(0_u32, false)];
     while let Some((index, expanded)) = pending.pop() {
         let node = &tree.nodes[index as usize];
         if node.is_leaf() {
             let primitive = tree.primitive_indices[node.first_index as usize];
-            finished.push(nodes.len() as u32);
-            nodes.push(BinaryNode {
+            finished.push(binary.nodes.len());
+            binary.nodes.push(BinaryNode {
                 bounds: boxes[primitive as usize],
                 leaves: 1,
                 children: [BinaryNode::LEAF, primitive],
@@ -93,31 +132,60 @@ fn binary(boxes: &[Bounds], quality: Quality) -> Binary {
         } else if expanded {
             let right = finished.pop().expect("both children are finished before their parent");
             let left = finished.pop().expect("both children are finished before their parent");
-            let (l, r) = (nodes[left as usize], nodes[right as usize]);
-            finished.push(nodes.len() as u32);
-            nodes.push(BinaryNode {
-                bounds: l.bounds.union(r.bounds),
-                leaves: l.leaves + r.leaves,
-                children: [left, right],
-            });
+            finished.push(binary.nodes.len());
+            binary.join(left, right);
         } else {
             pending.extend([(index, true), (node.first_index + 1, false), (node.first_index, false)]);
         }
     }
-    Binary { nodes }
+    binary
 }
 
 /// Builds the tree of `triangles`, all of which must be hittable.
 pub(crate) fn blas<const W: usize>(triangles: &[Triangle], quality: Quality) -> Blas<W> {
     let boxes: Vec<_> = triangles.iter().map(|t| Bounds::of_points(&t.corners)).collect();
-    let tree = binary(&boxes, quality);
+    wide(&binary(&boxes, quality), &|primitives| block(triangles, primitives))
+}
+
+/// Builds the tree of all triangles of a mesh that deforms, for the vertices that `mesh` has now. Its leaf blocks have no
+/// corners yet: [`refit`](super::refit::refit) puts them there.
+///
+/// Triangles that cannot be hit now are kept apart, in the order of the mesh: without boxes there is no better one, and the
+/// builder takes quadratic time where many boxes are equal.
+pub(crate) fn deforming<const W: usize>(mesh: &Mesh, masked: bool, quality: Quality) -> Blas<W> {
+    let all = 0..mesh.triangles.len() as u32;
+    let (hittable, others): (Vec<_>, Vec<_>) = all.partition(|&t| is_hittable(&mesh.corners(t)));
+    let boxes: Vec<_> = hittable.iter().map(|&t| Bounds::of_points(&mesh.corners(t))).collect();
+    let mut tree = binary(&boxes, quality);
+    for leaf in tree.nodes.iter_mut().filter(|node| node.is_leaf()) {
+        leaf.children[1] = hittable[leaf.children[1] as usize];
+    }
+    tree.append(&others);
+    wide(&tree, &|primitives| {
+        let mut block = Block::EMPTY;
+        block.triangles[..primitives.len()].copy_from_slice(primitives);
+        block.count = primitives.len() as u32;
+        block.masked = if masked { u32::MAX >> (32 - block.count) } else { 0 };
+        block
+    })
+}
+
+/// Collapses `tree` over triangles, which `block` puts into leaf blocks.
+fn wide<const W: usize>(tree: &Binary, block: &dyn Fn(&[u32]) -> Block<W>) -> Blas<W> {
     let mut blocks = Vec::new();
-    let wide = collapse::collapse::<W>(&tree, Costs::TRIANGLES, W as u32, &mut |primitives| {
-        blocks.push(block(triangles, primitives));
+    let wide = collapse::collapse::<W>(tree, Costs::TRIANGLES, W as u32, &mut |primitives| {
+        blocks.push(block(primitives));
         Child::leaf(blocks.len() - 1)
     });
-    let bounds = tree.nodes.last().map_or(Bounds::EMPTY, |n| n.bounds);
-    Blas { nodes: wide.nodes, blocks, bounds, depth: wide.depth, sah_cost: wide.sah_cost }
+    let root = tree.nodes.last();
+    Blas {
+        nodes: wide.nodes,
+        blocks,
+        bounds: root.map_or(Bounds::EMPTY, |root| root.bounds),
+        triangles: root.map_or(0, |root| root.leaves as usize),
+        depth: wide.depth,
+        sah_cost: wide.sah_cost,
+    }
 }
 
 fn block<const W: usize>(triangles: &[Triangle], primitives: &[u32]) -> Block<W> {

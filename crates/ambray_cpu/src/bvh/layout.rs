@@ -63,9 +63,10 @@ impl Child {
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct Block<const W: usize> {
-    /// `corners[vertex][axis][lane]`. Empty lanes hold NaN, which fails every comparison.
+    /// `corners[vertex][axis][lane]`. Lanes that are empty, or of triangles that cannot be hit in this pose, hold NaN, which
+    /// fails every comparison.
     pub(crate) corners: [[[f32; W]; 3]; 3],
-    /// Instances of the triangles; unused in trees of shared meshes.
+    /// Instances of the triangles; unused in trees of meshes that are placed.
     pub(crate) instances: [u32; W],
     /// Indices of the triangles in their meshes.
     pub(crate) triangles: [u32; W],
@@ -92,11 +93,13 @@ pub(crate) struct Blas<const W: usize> {
     pub(crate) blocks: Vec<Block<W>>,
     /// Smallest box around the triangles.
     pub(crate) bounds: Bounds,
+    /// In the leaf blocks.
+    pub(crate) triangles: usize,
     pub(crate) depth: usize,
     pub(crate) sah_cost: f32,
 }
 
-/// Tree over instances of shared meshes, or of shapes; leaves are indices into `instances`.
+/// Tree over placed meshes, or over shapes; leaves are indices into `instances`.
 #[derive(Debug, Default)]
 pub(crate) struct Tlas<const W: usize> {
     pub(crate) nodes: Vec<Node<W>>,
@@ -104,11 +107,11 @@ pub(crate) struct Tlas<const W: usize> {
     pub(crate) depth: usize,
 }
 
-/// Instance of a shared mesh or of a shape.
+/// Instance of a mesh with a tree of its own, or of a shape.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placed {
     pub(crate) object_from_world: glam::Affine3A,
-    /// Index among the shared trees, or among the shapes.
+    /// Index among the trees of placed meshes, or among the shapes.
     pub(crate) blas: u32,
     /// Index in the scene.
     pub(crate) instance: u32,

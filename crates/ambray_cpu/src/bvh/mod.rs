@@ -3,3 +3,4 @@
 pub(crate) mod build;
 mod collapse;
 pub(crate) mod layout;
+pub(crate) mod refit;

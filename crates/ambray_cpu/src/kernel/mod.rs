@@ -54,11 +54,11 @@ impl Query for Any {
 /// What the kernels read.
 #[derive(Clone, Copy)]
 pub(crate) struct Scene<'a, const W: usize> {
-    /// World-space tree of all unshared triangles.
+    /// World-space tree of all that is baked.
     pub(crate) baked: &'a Blas<W>,
-    /// Instances of shared meshes.
-    pub(crate) shared: &'a Tlas<W>,
-    /// Object-space trees of shared meshes.
+    /// Instances of meshes with trees of their own.
+    pub(crate) placed: &'a Tlas<W>,
+    /// Object-space trees of these meshes.
     pub(crate) meshes: &'a [Blas<W>],
     pub(crate) alpha: &'a dyn AlphaTest,
     /// Stack entries that the walk over instances may need.

@@ -1,4 +1,4 @@
-//! Sixteen rays at once through the tree of unshared triangles.
+//! Sixteen rays at once through the tree of baked triangles.
 //!
 //! Nodes are culled for the whole packet by interval arithmetic (Boulos et al. 2006), which stands on the same monotone
 //! operations as the slab test and so never culls what the slab test of a single ray keeps. A child's box is tested against
@@ -58,7 +58,7 @@ pub(crate) fn trace<const W: usize, L: Lanes<W>, R: Lanes<16>, Q: Query>(
         let best = &mut best[lane];
         let able = bundle.able >> lane & 1 != 0;
         if able
-            && !scene.shared.nodes.is_empty()
+            && !scene.placed.nodes.is_empty()
             && !(Q::ANY && best.is_hit())
             && let Some(prepared) = Prepared::new(ray.origin, ray.direction)
         {
@@ -68,7 +68,7 @@ pub(crate) fn trace<const W: usize, L: Lanes<W>, R: Lanes<16>, Q: Query>(
     }
 }
 
-/// Walks the rays of `group` through the tree of unshared triangles.
+/// Walks the rays of `group` through the tree of baked triangles.
 #[inline(always)]
 fn walk<const W: usize, L: Lanes<W>, R: Lanes<16>, Q: Query>(
     scene: &Scene<'_, W>,

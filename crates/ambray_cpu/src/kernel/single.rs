@@ -29,13 +29,13 @@ pub(crate) fn trace<const W: usize, L: Lanes<W>, Q: Query>(
     let entry = Entry { instance: None, near: 0.0, seed: ray.seed, alpha: scene.alpha };
     let done = blas::<W, L, Q>(scene.baked, Child::ROOT, &prepared, &entry, &mut best, stack);
     let answered = Q::ANY && done;
-    if !answered && !scene.shared.nodes.is_empty() {
+    if !answered && !scene.placed.nodes.is_empty() {
         instances::<W, L, Q>(scene, ray, &prepared, &mut best, stack);
     }
     if best.is_hit() { best } else { Hit::MISS }
 }
 
-/// Visits the instances of shared meshes. Returns whether the query is answered.
+/// Visits the instances of meshes with trees of their own. Returns whether the query is answered.
 #[inline(always)]
 pub(crate) fn instances<const W: usize, L: Lanes<W>, Q: Query>(
     scene: &Scene<'_, W>,
@@ -47,7 +47,7 @@ pub(crate) fn instances<const W: usize, L: Lanes<W>, Q: Query>(
     let (above, below) = stack.split_at_mut(scene.instance_stack);
     let limit = best.t;
     let visitor = Instances::<W, L, Q> { scene, ray, best, stack: below, lanes: PhantomData };
-    walk::<W, L>(&scene.shared.nodes, Child::ROOT, prepared, limit, above, visitor)
+    walk::<W, L>(&scene.placed.nodes, Child::ROOT, prepared, limit, above, visitor)
 }
 
 /// Leaves of the tree over instances.
@@ -62,7 +62,7 @@ struct Instances<'a, const W: usize, L, Q> {
 impl<const W: usize, L: Lanes<W>, Q: Query> Leaves for Instances<'_, W, L, Q> {
     #[inline(always)]
     fn visit(&mut self, leaf: usize, near: f32) -> Option<f32> {
-        let placed = &self.scene.shared.instances[leaf];
+        let placed = &self.scene.placed.instances[leaf];
         let ray = self.ray;
         if let Some(object) = Prepared::transformed(&placed.object_from_world, ray.origin, ray.direction) {
             let tree = &self.scene.meshes[placed.blas as usize];

@@ -68,7 +68,7 @@ fn corner<const W: usize, L: Lanes<W>>(axes: &[[f32; W]; 3], ray: &Prepared) -> 
 /// What all triangles below an instance share.
 #[derive(Clone, Copy)]
 pub(crate) struct Entry<'a> {
-    /// Index of the instance; `None` in the tree of unshared triangles, whose blocks know.
+    /// Index of the instance; `None` in the tree of baked triangles, whose blocks know.
     pub(crate) instance: Option<u32>,
     /// Near distance of the instance's box.
     pub(crate) near: f32,

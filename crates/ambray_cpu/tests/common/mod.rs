@@ -4,7 +4,7 @@
 
 use ambray_core::trace::{Hit, Ray, Trace};
 use ambray_cpu::AlphaTest;
-use ambray_scene::{Instance, Mesh, Scene};
+use ambray_scene::{Instance, Mesh, Motion, Scene};
 use glam::{Affine3A, DVec3, Vec3};
 
 /// Random numbers by PCG, so that tests are the same everywhere.
@@ -35,6 +35,85 @@ impl Random {
     }
 }
 
+/// Triangles of many shapes in [-1, 1]³.
+pub fn random_triangles(random: &mut Random, count: usize) -> Vec<[Vec3; 3]> {
+    let mut triangles: Vec<[Vec3; 3]> = Vec::new();
+    while triangles.len() < count {
+        let (p, q, r) = (random.cube(), random.cube(), random.cube());
+        let axis = random.below(3) as usize;
+        triangles.push(match random.below(10) {
+            0..=3 => [p, p + q * 0.2, p + r * 0.2],
+            4 => [p, q, r],
+            5 => [p, p + q, p + q + r * 1e-5], // needle
+            6 => {
+                let flat = |mut v: Vec3| {
+                    v[axis] = p[axis];
+                    v
+                };
+                [p, flat(q), flat(r)]
+            }
+            7 => [p, q, p + (q - p) * 0.5], // collinear, or nearly so
+            8 => [p, p, q],
+            _ => triangles.get(random.below(count as u32) as usize).copied().unwrap_or([p, q, r]),
+        });
+    }
+    triangles
+}
+
+/// Rays of many kinds about the triangles, in packets of 16 and alone.
+pub fn random_rays(random: &mut Random, triangles: &[[Vec3; 3]], count: usize) -> Vec<Ray> {
+    let mut rays = Vec::new();
+    let on_triangle = |random: &mut Random| {
+        let [a, b, c] = triangles[random.below(triangles.len() as u32) as usize];
+        let (mut u, mut v) = (random.unit(), random.unit());
+        match random.below(4) {
+            0 => (u, v) = (0.0, 0.0),
+            1 => v = 0.0,
+            _ => {}
+        }
+        if u + v > 1.0 {
+            (u, v) = (1.0 - u, 1.0 - v);
+        }
+        a + (b - a) * u + (c - a) * v
+    };
+    let kinds = 6;
+    for kind in 0..kinds * count / 16 {
+        let shared = match random.below(3) {
+            0 => random.direction(),
+            1 => {
+                let mut d = Vec3::ZERO;
+                d[random.below(3) as usize] = if random.below(2) == 0 { 1.0 } else { -1.0 };
+                d
+            }
+            _ => {
+                let mut d = random.direction();
+                d[random.below(3) as usize] = if random.below(2) == 0 { 0.0 } else { -0.0 };
+                d.normalize_or(Vec3::X)
+            }
+        };
+        let start = random.cube();
+        for _ in 0..16 {
+            let t_max = [0.1, 1.0, f32::INFINITY][random.below(3) as usize];
+            let (origin, direction) = match kind % kinds {
+                0 => (random.cube() * 1.5, random.direction()),
+                1 => (random.cube() * 1.5, shared),
+                2 => (start + random.cube() * 0.05, shared),
+                3 => (on_triangle(random), random.direction()), // starts on a surface
+                4 => {
+                    let origin = random.cube() * 2.0;
+                    (origin, (on_triangle(random) - origin).normalize_or(Vec3::Y)) // corners and edges
+                }
+                _ => {
+                    let [a, b, _] = triangles[random.below(triangles.len() as u32) as usize];
+                    (a - (b - a), (b - a).normalize_or(Vec3::Z)) // along an edge
+                }
+            };
+            rays.push(Ray { origin, t_max, direction, seed: random.bits() });
+        }
+    }
+    rays
+}
+
 /// Scene of meshes with one instance each, untransformed.
 pub fn scene(meshes: Vec<Mesh>) -> Scene {
     let instances = (0..meshes.len() as u32)
@@ -61,7 +140,16 @@ pub struct BruteForce<A> {
     alpha: A,
 }
 
-/// Triangles of an instance, or of all unshared ones.
+/// Whether rays go to the space of an instance: its mesh has several that do not move, or it moves itself.
+fn in_object_space(scene: &Scene, instance: &Instance) -> bool {
+    let motion = |instance: &Instance| scene.rig.as_ref().map_or(Motion::Static, |_| instance.motion);
+    let of_mesh = || scene.instances.iter().filter(|other| other.mesh == instance.mesh);
+    motion(instance) != Motion::Static
+        || of_mesh().any(|other| motion(other) == Motion::Deforming)
+        || of_mesh().filter(|other| motion(other) == Motion::Static).count() > 1
+}
+
+/// Triangles of an instance.
 struct Group {
     range: std::ops::Range<usize>,
     instance: u32,
@@ -72,8 +160,11 @@ impl<A: AlphaTest> BruteForce<A> {
     pub fn new(scene: &Scene, alpha: A) -> Self {
         let mut out = Self { triangles: Vec::new(), groups: Vec::new(), alpha };
         for (index, instance) in (0_u32..).zip(&scene.instances) {
-            let shared = scene.instances.iter().filter(|other| other.mesh == instance.mesh).count() > 1;
-            let to_tree = if shared { Affine3A::IDENTITY } else { instance.world_from_object };
+            let to_tree = if in_object_space(scene, instance) {
+                Affine3A::IDENTITY
+            } else {
+                instance.world_from_object
+            };
             let mesh = &scene.meshes[instance.mesh as usize];
             let start = out.triangles.len();
             let mut planes = [
@@ -95,7 +186,7 @@ impl<A: AlphaTest> BruteForce<A> {
                 out.triangles.push((corners, t, !out.alpha.is_opaque(instance.mesh)));
                 planes = union(planes, bounds(&corners));
             }
-            let placed = shared.then(|| {
+            let placed = in_object_space(scene, instance).then(|| {
                 let corners: [Vec3; 8] = std::array::from_fn(|i| {
                     instance.world_from_object.transform_point3(Vec3::new(
                         planes[3 * (i & 1)],

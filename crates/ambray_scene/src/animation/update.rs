@@ -27,8 +27,13 @@ pub enum UpdatePolicy {
     Cache,
 }
 
+impl Updates {
+    /// The default.
+    pub const DEFAULT: Self = Self { policy: UpdatePolicy::Auto, poor: 1.5, poses: 8 };
+}
+
 impl Default for Updates {
     fn default() -> Self {
-        Self { policy: UpdatePolicy::Auto, poor: 1.5, poses: 8 }
+        Self::DEFAULT
     }
 }
