@@ -2,6 +2,7 @@
 
 mod animate;
 mod backend;
+mod notes;
 mod sequence;
 
 use std::{any::TypeId, ffi::OsString, fmt::Display, path::PathBuf, str::FromStr};
@@ -16,49 +17,14 @@ use clap::{
 };
 
 pub use animate::{AnimateArgs, Updates, UpdatesArgs};
+use notes::{EXAMPLES, POINTS_HELP, PRECEDENCE, RENDER_NOTES};
+
 pub use backend::{Backend, BackendArgs, DeviceArgs, Grouping, GroupingArgs, Trace};
 pub use sequence::{Frames, Rate, SequenceArgs};
 
-const EXAMPLES: &str = "\
-Examples:
-  ambray                                       render the built-in atrium to ambray.png
-  ambray render scene.glb -o picture.png       render a file
-  ambray render scene.glb --preset draft --size 640x360
-  ambray render scene.glb -o layers.exr --aov openness,depth,albedo
-  ambray render atrium --camera-position 0,1.6,-3 --camera-target 0,1.5,0
-  ambray query scene.glb --points points.csv -o openness.csv
-  ambray bench --frames 200 --json
-  ambray info scene.glb
-  ambray info --devices                        list the Vulkan devices
-
-Exit codes: 0 done, 2 error, 130 interrupted.";
-
-const POINTS_HELP: &str = "\
-Points in the scene: CSV columns x,y,z,nx,ny,nz and optionally class (0 to 15), with or without a header, or JSON \
-lines {\"position\": [x,y,z], \"normal\": [x,y,z], \"class\": 0}; - is stdin";
-
-const PRECEDENCE: &str = "\
-Which setting counts: a flag beats the settings file, which beats the preset, which beats the default. \
-A --preset flag replaces the preset named in the settings file, but not the settings written out there. \
-Of a flag given twice, the last one counts.";
-
-const RENDER_NOTES: &str = "\
-How PNG shows the planes of --aov (OpenEXR holds the plain values):
-  colours        exposure, tone map and sRGB, as the picture; the albedo by sRGB alone
-  openness       grey, display value = value: 0 black, 1 white
-  depth          grey from black at the nearest surface to white at the farthest; white where nothing is seen
-  position       x, y, z as red, green, blue over the box of what is seen; black where nothing is seen
-  normals        (n + 1)/2 as red, green, blue; black where nothing is seen
-  indices        a colour of their own each; black where nothing is seen
-  ray-count      grey from 0 to the largest count
-
-A picture holds its settings: --settings picture.png makes it again.
-
-";
-
 /// Ambient lighting by ray tracing: openness, colour bleeding and pictures.
 ///
-/// Without a command, the built-in scene is rendered to ambray.png in the current folder.
+/// Without a command, the built-in scene atrium is rendered to ambray.png in the current folder.
 #[derive(Debug, Parser)]
 #[command(name = "ambray", version, max_term_width = 100, after_long_help = EXAMPLES)]
 pub struct Cli {

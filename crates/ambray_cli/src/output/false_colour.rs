@@ -9,6 +9,7 @@
 //! | normals | (n + 1)/2 as red, green, blue; black where there is none |
 //! | indices | a colour of their own each; black where nothing is seen |
 //! | counts | grey, linear from 0 to the largest |
+//! | motion | to the right and down as red and green about grey, relative to the largest movement |
 
 use ambray::{Aov, AovKind, Frame, settings::Settings};
 use glam::Vec3;
@@ -142,6 +143,9 @@ mod tests {
     fn counts_are_relative_and_nothing_is_black() {
         assert_eq!(counts(&[0.0, 4.0, 1.0]), [0.0, 1.0, 0.25]);
         assert_eq!(counts(&[0.0]), [0.0]);
+        assert_eq!(motion(&[0.0, 0.0]), [Vec3::splat(0.5)]);
+        let moved = motion(&[2.0, -4.0, 0.0, 4.0]);
+        assert_eq!(moved, [Vec3::new(0.75, 0.0, 0.5), Vec3::new(0.5, 1.0, 0.5)]);
         assert_eq!(normal(Vec3::Y), Vec3::new(0.5, 1.0, 0.5));
         assert_eq!(normal(Vec3::ZERO), Vec3::ZERO);
     }

@@ -1,0 +1,60 @@
+//! Longer texts of the help.
+
+pub(super) const EXAMPLES: &str = "\
+Examples:
+  ambray                                       render the built-in atrium to ambray.png
+  ambray render scene.glb -o picture.png       render a file
+  ambray render scene.glb --preset draft --size 640x360
+  ambray render scene.glb -o layers.exr --aov openness,depth,albedo
+  ambray render atrium --camera-position 0,1.6,-3 --camera-target 0,1.5,0
+  ambray render scene.glb --time 1.25 -o moment.png
+  ambray render scene.glb --frames 0..120 --fps 24 -o out/frame_####.png
+  ambray render scene.glb -o turn.mp4          the whole animation as a video, with ffmpeg (.gif without)
+  ambray query scene.glb --points points.csv -o openness.csv
+  ambray bench --frames 200 --json
+  ambray bench flock --animate                 what it costs to follow an animation
+  ambray info scene.glb                        what is in it: meshes, lights, cameras, animations
+  ambray info --devices                        list the Vulkan devices
+
+Exit codes: 0 done, 2 error, 130 interrupted.";
+
+pub(super) const POINTS_HELP: &str = "\
+Points in the scene: CSV columns x,y,z,nx,ny,nz and optionally class (0 to 15), with or without a header, or JSON \
+lines {\"position\": [x,y,z], \"normal\": [x,y,z], \"class\": 0}; - is stdin";
+
+pub(super) const PRECEDENCE: &str = "\
+Which setting counts: a flag beats the settings file, which beats the preset, which beats the default. \
+A --preset flag replaces the preset named in the settings file, but not the settings written out there. \
+Of a flag given twice, the last one counts.";
+
+pub(super) const RENDER_NOTES: &str = "\
+How PNG shows the planes of --aov (OpenEXR holds the plain values):
+  colours        exposure, tone map and sRGB, as the picture; the albedo by sRGB alone
+  openness       grey, display value = value: 0 black, 1 white
+  depth          grey from black at the nearest surface to white at the farthest; white where nothing is seen
+  position       x, y, z as red, green, blue over the box of what is seen; black where nothing is seen
+  normals        (n + 1)/2 as red, green, blue; black where nothing is seen
+  indices        a colour of their own each; black where nothing is seen
+  counts         grey from 0 to the largest count
+  motion         to the right and down as red and green about grey, relative to the largest movement
+
+A picture holds its settings: --settings picture.png makes it again, but for light accumulated over earlier frames.
+
+Sequences:
+  --frames 0..120 renders frames 0 to 119, 0..=120 also 120, 7 that one, 0..120:5 every fifth. Frame k shows the time \
+k/fps, counted from --time if that is given. All frames have the same samples (--frame), so that nothing flickers that \
+stands still; with --temporal on, frame k continues the sequence of samples as frame --frame + k, and light accumulates \
+from the first frame on.
+  In the name of OUT, one run of # is the number, with zeros up to the length of the run. The folder is made if only it is \
+missing. All files of a frame appear together; Ctrl-C keeps those of finished frames.
+  --resume keeps frames whose files are there, if they hold the same settings, scene, planes and version, and are not older \
+than the scene file (other files that it refers to are not looked at). With --temporal on, the frames before a missing one \
+are rendered again, not written.
+  --json prints one object when all is done, with a list of the frames.
+
+Videos:
+  GIF needs nothing else: 256 colours a frame, up to 50 frames a second, beginnings of frames rounded to hundredths of a \
+second, repeated for ever. MP4 (H.264, even sides), WebM (VP9) and animated WebP need ffmpeg on the path. Every so many \
+frames (:STEP) are shown as much longer. The video appears when it is complete; Ctrl-C leaves none.
+
+";
