@@ -124,9 +124,8 @@ impl VulkanBackend {
                 none.insert(Motion::new(&self.context, scene, &self.acceleration, &self.tables, &programs)?)
             }
         };
-        let moved = Move { scene, pose, rendered: state.rendered };
-        let mut stats = motion.pose(&moved, &mut self.acceleration, &mut self.tables, control)?;
-        state.rendered = false;
+        let (moved, rendered) = (Move { scene, pose }, &mut state.rendered);
+        let mut stats = motion.pose(&moved, rendered, &mut self.acceleration, &mut self.tables, control)?;
         stats.total = start.elapsed();
         Ok(stats)
     }

@@ -1,6 +1,8 @@
 //! Nothing is left behind: counters, memory of the process, and what the validation layer finds when all is destroyed.
 
 mod common;
+#[path = "common/moving.rs"]
+mod moving;
 #[path = "common/scenes.rs"]
 mod scenes;
 
@@ -10,7 +12,8 @@ use ambray_core::{
     control::Control,
     settings::{Falloff, NearRadiance, RadianceSource, Settings, Thin, Window},
 };
-use ambray_vulkan::{Context, DeviceOptions, TraceMode, VulkanBackend, VulkanOptions};
+use ambray_scene::animation::{UpdatePolicy, Updates};
+use ambray_vulkan::{AccelerationOptions, Context, DeviceOptions, TraceMode, VulkanBackend, VulkanOptions};
 use ash::vk;
 use common::context;
 use scenes::{room, view};
@@ -97,6 +100,37 @@ fn exercise(context: &Arc<Context>, rounds: &Rounds) {
     });
     drop(first);
     assert_eq!(context.live(), empty);
+    exercise_poses(context, rounds);
+    assert_eq!(context.live(), empty);
+}
+
+/// Poses under all policies, with frames between.
+fn exercise_poses(context: &Arc<Context>, rounds: &Rounds) {
+    let settings = Settings { spp: 1, ..Settings::default() };
+    let scene = Arc::new(moving::scene(6));
+    for policy in [UpdatePolicy::Auto, UpdatePolicy::Cache] {
+        let updates = Updates { policy, poses: 2, ..Updates::default() };
+        let acceleration = AccelerationOptions { updates, ..AccelerationOptions::default() };
+        let options = VulkanOptions { acceleration, ..VulkanOptions::default() };
+        let mut backend = VulkanBackend::new(context, &scene, options, &Control::default())
+            .unwrap_or_else(|error| panic!("{error}"));
+        let mut random = moving::Random(1);
+        let mut live = None;
+        rounds.run("poses", 500, |i| {
+            let pose = moving::pose(&scene, &mut random, (i % 3) as f32);
+            let [placed, _] = moving::posed(&scene, &pose);
+            let moved = backend.pose(&placed, &pose, &Control::default());
+            moved.unwrap_or_else(|error| panic!("{error}"));
+            if i % 5 == 0 {
+                render(&backend, &settings, 16, 9);
+            }
+            // By then the cache is full.
+            if i > 50 {
+                let now = context.live();
+                assert_eq!(*live.get_or_insert(now), now, "{policy:?}");
+            }
+        });
+    }
 }
 
 /// One test, since tests of one process share its memory. The validation layer has memory of its own, which grows: what is

@@ -17,10 +17,14 @@ use ambray_core::{
 use ambray_scene::{
     Scene,
     animation::{Pose, UpdatePolicy, Updates},
+    surface::normal_matrix,
 };
-use ambray_vulkan::{AccelerationOptions, Context, TraceMode, VulkanBackend, VulkanError, VulkanOptions};
+use ambray_vulkan::{
+    AccelerationOptions, Context, TraceMode, VulkanBackend, VulkanError, VulkanOptions, layout,
+    testing::Functions,
+};
 use common::{assert_valid, context};
-use glam::{DAffine3, DVec3, Vec3};
+use glam::{DAffine3, DVec3, Vec3, Vec3A};
 use moving::{BALL, BANNER_INSTANCE, BOX, BOX_INSTANCE, Random, pose, posed, rest, scene};
 use scenes::view;
 
@@ -34,7 +38,9 @@ fn modes(context: &Context) -> Vec<TraceMode> {
 }
 
 fn open(context: &Arc<Context>, scene: &Arc<Scene>, trace: TraceMode, updates: Updates) -> VulkanBackend {
-    let acceleration = AccelerationOptions { updates, ..AccelerationOptions::default() };
+    // Where there are two ways to trace, one shares its scratch memory among all builds and the other builds one by one.
+    let batch = if trace == TraceMode::Query { 1 } else { AccelerationOptions::default().batch };
+    let acceleration = AccelerationOptions { updates, batch, ..AccelerationOptions::default() };
     let options = VulkanOptions { trace, acceleration };
     VulkanBackend::new(context, scene, options, &Control::default()).unwrap_or_else(|error| panic!("{error}"))
 }
@@ -333,4 +339,91 @@ fn scenes_without_deformers_move() {
     let mut backend = open(&context, &still, TraceMode::Auto, Updates::default());
     backend.pose(&still, &Pose::default(), &Control::default()).unwrap_or_else(|error| panic!("{error}"));
     assert_valid(&context);
+}
+
+/// Points of surfaces, where they were when the last frame was rendered.
+#[test]
+fn surfaces_know_where_they_were() {
+    let Some(context) = context() else { return };
+    let scene = Arc::new(scene(6));
+    let settings = Settings { spp: 1, ..Settings::default() };
+    let view = view(&settings, 8, 8);
+    let mut backend = open(&context, &scene, TraceMode::Auto, Updates::default());
+    let mut random = Random(21);
+    let poses: Vec<_> = (0..4).map(|_| pose(&scene, &mut random, 0.3)).collect();
+    let at = |pose: &Pose| posed(&scene, pose)[1].clone();
+    let [a, b, c, d] = [&poses[0], &poses[1], &poses[2], &poses[3]].map(at);
+    let render = |backend: &VulkanBackend| {
+        backend.render(&settings, &view, Control::default()).unwrap_or_else(|error| panic!("{error}"));
+    };
+    check_previous(&backend, &scene, "nothing was rendered");
+    move_to(&mut backend, &scene, &poses[0]);
+    check_previous(&backend, &a, "no pose was rendered");
+    render(&backend);
+    check_previous(&backend, &a, "nothing moved since");
+    move_to(&mut backend, &scene, &poses[1]);
+    check_previous(&backend, &a, "moved once");
+    move_to(&mut backend, &scene, &poses[2]);
+    check_previous(&backend, &a, "the pose between was not rendered");
+    render(&backend);
+    check_previous(&backend, &c, "rendered again");
+    render(&backend);
+    check_previous(&backend, &c, "and again");
+    move_to(&mut backend, &scene, &poses[3]);
+    check_previous(&backend, &c, "moved again");
+    render(&backend);
+    check_previous(&backend, &d, "the last");
+    move_to(&mut backend, &scene, &poses[1]);
+    move_to(&mut backend, &scene, &poses[1]);
+    check_previous(&backend, &d, "moved twice to the same place");
+    render(&backend);
+    check_previous(&backend, &b, "the end");
+    assert_valid(&context);
+}
+
+/// Fails unless the shaders find all points where they are in `then`.
+#[track_caller]
+fn check_previous(backend: &VulkanBackend, then: &Scene, what: &str) {
+    let settings = Settings::default();
+    let functions = Functions::new(backend, &settings).unwrap_or_else(|error| panic!("{error}"));
+    let mut random = Random(77);
+    let (mut calls, mut expected) = (Vec::new(), Vec::new());
+    for instance in 0..(then.instances.len() + then.shape_instances.len()) as u32 {
+        for _ in 0..200 {
+            let mut call = [0; layout::ARGUMENTS as usize];
+            call[0] = instance;
+            let (u, v) = (random.between(0.0, 0.5), random.between(0.0, 0.5));
+            let point = random.vector(1.0).normalize() * 0.5;
+            call[2..7].copy_from_slice(&[u, v, point.x, point.y, point.z].map(f32::to_bits));
+            expected.push(match then.shape_instance(instance) {
+                Some(shape) => {
+                    let normal = normal_matrix(shape.world_from_object.matrix3) * Vec3A::from(point);
+                    (shape.world_from_object.transform_point3(point), Vec3::from(normal))
+                }
+                None => {
+                    let placed = &then.instances[instance as usize];
+                    let mesh = &then.meshes[placed.mesh as usize];
+                    let triangle = random.between(0.0, mesh.triangles.len() as f32) as u32;
+                    call[1] = triangle;
+                    let corners = mesh.triangles[triangle as usize].map(|i| i as usize);
+                    let mean = |list: &[Vec3]| {
+                        list[corners[0]] * (1.0 - u - v) + list[corners[1]] * u + list[corners[2]] * v
+                    };
+                    let normal =
+                        normal_matrix(placed.world_from_object.matrix3) * Vec3A::from(mean(&mesh.normals));
+                    (placed.world_from_object.transform_point3(mean(&mesh.positions)), Vec3::from(normal))
+                }
+            });
+            calls.push(call);
+        }
+    }
+    let found = functions.call(layout::FUNCTION_PREVIOUS, &view(&settings, 8, 8), &calls);
+    let found = found.unwrap_or_else(|error| panic!("{error}"));
+    for ((call, values), (position, normal)) in calls.iter().zip(&found).zip(expected) {
+        let values = values.map(f32::from_bits);
+        let vector = |i: usize| Vec3::new(values[i], values[i + 1], values[i + 2]);
+        let what = format!("{what}: instance {}, triangle {}", call[0], call[1]);
+        assert!(vector(0).abs_diff_eq(position, 2e-5), "{what}: {} for {position}", vector(0));
+        assert!(vector(3).abs_diff_eq(normal.normalize(), 2e-4), "{what}: {} for {normal}", vector(3));
+    }
 }

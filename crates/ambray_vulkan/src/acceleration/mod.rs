@@ -180,6 +180,7 @@ impl Acceleration {
             (control.progress)((index + 1) as f32 / count as f32);
         }
         all.structures = builder.finish()?.into_iter().map(Slot::new).collect();
+        all.followers.iter_mut().for_each(|follower| follower.ask_scratch(context));
         all.sort();
         all.check_limits(context)?;
         all.stats.structures = all.structures.len();

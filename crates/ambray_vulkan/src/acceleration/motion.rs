@@ -27,6 +27,8 @@ pub(crate) struct Follower {
     /// Index of its slot.
     slot: usize,
     manner: Manner,
+    /// Scratch memory of an update or build, bytes, aligned.
+    scratch: u64,
 }
 
 /// What is done to a structure.
@@ -60,11 +62,18 @@ impl Follower {
         slot: usize,
         manner: Manner,
     ) -> Self {
-        Self { mesh, triangles, vertices, first_ref, slot, manner }
+        Self { mesh, triangles, vertices, first_ref, slot, manner, scratch: 0 }
     }
 
     fn geometry(&self, positions: u64, indices: u64) -> vk::AccelerationStructureGeometryKHR<'static> {
         build::triangles(positions, self.vertices.into(), indices, self.manner)
+    }
+
+    /// Asks how much scratch memory it takes.
+    pub(super) fn ask_scratch(&mut self, context: &Context) {
+        let sizes = self.sizes(context);
+        let need = sizes.build_scratch_size.max(sizes.update_scratch_size);
+        self.scratch = need.next_multiple_of(u64::from(context.limits().scratch_alignment));
     }
 
     fn sizes(&self, context: &Context) -> vk::AccelerationStructureBuildSizesInfoKHR<'static> {
@@ -111,6 +120,11 @@ impl Acceleration {
         self.structures[follower.slot].kept.len()
     }
 
+    /// Which of them rays meet.
+    pub(crate) fn shown(&self, follower: &Follower) -> usize {
+        self.structures[follower.slot].shown
+    }
+
     /// Makes the structure `kept` of a follower the one that rays meet, and takes the box of its vertices. Placements take
     /// both with [`move_to`](Self::move_to).
     pub(crate) fn show(&mut self, follower: usize, kept: usize, bounds: Bounds) {
@@ -135,8 +149,8 @@ impl Acceleration {
 
     /// Scratch memory with which [`record`](Self::record) can work on all followers, bytes: enough for the largest, and for
     /// all at once if that is not more than a batch.
-    pub(crate) fn scratch_size(&self, context: &Context) -> u64 {
-        let needs = self.followers.iter().map(|f| scratch_of(context, f));
+    pub(crate) fn scratch_size(&self) -> u64 {
+        let needs = self.followers.iter().map(|follower| follower.scratch);
         let (all, largest) = needs.fold((0, 0), |(all, largest), need| (all + need, need.max(largest)));
         all.min(self.options.batch).max(largest)
     }
@@ -155,7 +169,7 @@ impl Acceleration {
             }
             let (mut used, mut offsets) = (0, Vec::new());
             for job in rest {
-                let need = scratch_of(recorder.context(), &self.followers[job.follower]);
+                let need = self.followers[job.follower].scratch;
                 if used + need > room && used > 0 {
                     break;
                 }
@@ -202,11 +216,4 @@ impl Acceleration {
             commands.cmd_build_acceleration_structures(recorder.raw(), &infos, &ranges);
         }
     }
-}
-
-/// Scratch memory of an update or build of `follower`, aligned.
-fn scratch_of(context: &Context, follower: &Follower) -> u64 {
-    let sizes = follower.sizes(context);
-    let need = sizes.build_scratch_size.max(sizes.update_scratch_size);
-    need.next_multiple_of(u64::from(context.limits().scratch_alignment))
 }

@@ -31,12 +31,14 @@ pub(super) struct Built {
     pub(super) clusters: Buffer,
     /// Some vertices at the pose of the build, if poses are compared; none before it is built.
     pub(super) sample: Option<Vec<Vec3>>,
+    /// Which pose last ended up with it, counted from 1.
+    pub(super) used: u64,
 }
 
 impl Built {
     /// Room for the clusters of `triangles`.
     pub(super) fn new(context: &Arc<Context>, triangles: u32) -> Result<Self> {
-        Ok(Self { clusters: buffer(context, triangles)?, sample: None })
+        Ok(Self { clusters: buffer(context, triangles)?, sample: None, used: 0 })
     }
 }
 

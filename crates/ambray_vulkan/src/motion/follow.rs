@@ -1,7 +1,6 @@
 //! The submission that moves everything to a pose.
 
 use ambray_core::frame::PoseStats;
-use ambray_scene::animation::{Pose, Rig};
 use glam::Affine3A;
 
 use super::bytes::Bytes;
@@ -24,26 +23,27 @@ struct Arguments {
 }
 
 impl Motion {
-    /// Copies tables, deforms, and does what `choices` say to structures. Waits.
+    /// Copies tables, deforms, and does what `choices` say to structures; `rendered` as in [`Motion::pose`]. Waits.
     pub(super) fn follow(
         &mut self,
         moved: &Move<'_>,
-        rig: &Rig,
+        rendered: &mut bool,
         choices: &[Choice],
         acceleration: &Acceleration,
         tables: &mut Tables,
     ) -> Result<PoseStats> {
         let (instances, shapes) = tables.changes(moved.scene);
-        if moved.rendered && self.previous.is_none() {
+        let leaves_rendered = *rendered;
+        if leaves_rendered && self.previous.is_none() {
             self.previous = Some(Previous::new(&self.context, tables)?);
         }
         // Parts are aligned, and so is what follows them.
         let slack = 64;
         let entries = size_of_val(&instances.entries[..]) + size_of_val(&shapes.entries[..]) + slack;
-        let size = self.arguments(moved.pose, rig, choices).bytes.len();
+        let size = self.arguments(moved, choices).bytes.len();
         self.memory.reserve(size + entries as u64)?;
         // Again, since what is written holds addresses of its own parts.
-        let Arguments { mut bytes, addresses } = self.arguments(moved.pose, rig, choices);
+        let Arguments { mut bytes, addresses } = self.arguments(moved, choices);
         let instances_at = bytes.push(&instances.entries);
         let shapes_at = bytes.push(&shapes.entries);
         self.memory.write(&bytes);
@@ -52,7 +52,7 @@ impl Motion {
 
         let Self { commands, programs, meshes, memory, previous, .. } = self;
         commands.submit(|recorder| {
-            if let Some(previous) = previous.as_ref().filter(|_| moved.rendered) {
+            if let Some(previous) = previous.as_ref().filter(|_| leaves_rendered) {
                 previous.record(recorder, tables);
                 // What was copied is overwritten.
                 recorder.barrier(Work::Transfer, Work::Transfer);
@@ -94,26 +94,27 @@ impl Motion {
             let is_deformation = timing.label == DEFORMATION;
             *(if is_deformation { &mut stats.deformation } else { &mut stats.bottom_level }) += duration;
         }
-        self.has_moved |= moved.rendered;
+        self.has_moved |= leaves_rendered;
+        *rendered = false;
         tables.instances.accept(instances);
         tables.shape_instances.accept(shapes);
         Ok(stats)
     }
 
     /// What the shaders read, with the addresses that it has in the memory there is now.
-    fn arguments(&self, pose: &Pose, rig: &Rig, choices: &[Choice]) -> Arguments {
+    fn arguments(&self, moved: &Move<'_>, choices: &[Choice]) -> Arguments {
         let base = self.memory.arguments.address();
         let mut bytes = Bytes::default();
         let mut skin = |joints: &Vec<Affine3A>| {
             let columns: Vec<_> = joints.iter().map(Affine3A::to_cols_array_2d).collect();
             base + bytes.push(&columns)
         };
-        let skins: Vec<u64> = pose.joints.iter().map(&mut skin).collect();
+        let skins: Vec<u64> = moved.pose.joints.iter().map(&mut skin).collect();
         let mut addresses = Vec::with_capacity(choices.len());
         for choice in choices {
             let mesh = &self.meshes[choice.mesh];
-            let deformer = &rig.deformers[mesh.deformer];
-            let (weights, _) = mesh.posed(deformer, pose);
+            let deformer = &moved.deformers()[mesh.deformer];
+            let (weights, _) = mesh.posed(deformer, moved.pose);
             let joints = deformer.skin.map_or(0, |skin| skins[skin as usize]);
             let place = (self.shared(), choice.mesh);
             addresses.push([

@@ -18,7 +18,7 @@ use std::sync::Arc;
 use ambray_core::{control::Control, frame::PoseStats};
 use ambray_scene::{
     Scene,
-    animation::{Pose, Rig, UpdatePolicy},
+    animation::{Deformer, Pose, UpdatePolicy},
 };
 use glam::Vec3;
 
@@ -45,6 +45,8 @@ pub(crate) struct Motion {
     previous: Option<Previous>,
     /// Whether `previous` has what the last frame saw.
     has_moved: bool,
+    /// Poses seen.
+    clock: u64,
     context: Arc<Context>,
 }
 
@@ -54,8 +56,16 @@ pub(crate) struct Move<'a> {
     /// The scene, placed.
     pub(crate) scene: &'a Scene,
     pub(crate) pose: &'a Pose,
-    /// Whether a frame of the last pose was rendered.
-    pub(crate) rendered: bool,
+}
+
+impl Move<'_> {
+    fn deformers(&self) -> &[Deformer] {
+        deformers(self.scene)
+    }
+}
+
+fn deformers(scene: &Scene) -> &[Deformer] {
+    scene.rig.as_ref().map_or(&[], |rig| &rig.deformers)
 }
 
 /// What becomes of a structure of a mesh.
@@ -81,7 +91,7 @@ impl Motion {
         tables: &Tables,
         programs: &Arc<MotionPrograms>,
     ) -> Result<Self> {
-        let deformers = scene.rig.as_ref().map_or(&[][..], |rig| &rig.deformers);
+        let deformers = deformers(scene);
         let (mut meshes, mut boxes) = (Vec::<DeformingMesh>::new(), 0);
         for (follower, of) in acceleration.followers().iter().enumerate() {
             let Some(index) = deformers.iter().position(|deformer| deformer.mesh == of.mesh) else {
@@ -94,7 +104,7 @@ impl Motion {
             boxes += mesh.box_bytes();
             meshes.push(mesh);
         }
-        let room = acceleration.scratch_size(context);
+        let room = acceleration.scratch_size();
         let mut motion = Self {
             commands: CommandSet::new(context)?,
             programs: Arc::clone(programs),
@@ -102,6 +112,7 @@ impl Motion {
             meshes,
             previous: None,
             has_moved: false,
+            clock: 0,
             context: Arc::clone(context),
         };
         if acceleration.updates().policy != UpdatePolicy::Rebuild {
@@ -118,18 +129,18 @@ impl Motion {
         }
     }
 
-    /// Moves the scene. Where memory is short, or the work is cancelled, all of it has moved or nothing has.
+    /// Moves the scene. `rendered` says whether a frame of the last pose was rendered, and from then on that none of the new
+    /// one was. Where memory is short, or the work is cancelled, all of the scene has moved or nothing has.
     pub(crate) fn pose(
         &mut self,
         moved: &Move<'_>,
+        rendered: &mut bool,
         acceleration: &mut Acceleration,
         tables: &mut Tables,
         control: &Control<'_>,
     ) -> Result<PoseStats> {
         let updates = *acceleration.updates();
-        let no_rig = Rig::default();
-        let rig = moved.scene.rig.as_deref().unwrap_or(&no_rig);
-        let samples = self.samples(rig, moved.pose, updates.policy);
+        let samples = self.samples(moved, updates.policy);
         let choices: Vec<_> = (self.meshes.iter().zip(&samples).enumerate())
             .map(|(index, (mesh, sample))| Choice {
                 mesh: index,
@@ -137,7 +148,7 @@ impl Motion {
                 mode: if updates.policy == UpdatePolicy::Rebuild { Mode::Build } else { Mode::Update },
             })
             .collect();
-        let mut stats = self.follow(moved, rig, &choices, acceleration, tables)?;
+        let mut stats = self.follow(moved, rendered, &choices, acceleration, tables)?;
         let found = self.memory.found();
         for (choice, found) in choices.iter().zip(&found) {
             acceleration.show(self.meshes[choice.mesh].follower, choice.built, found.bounds);
@@ -160,6 +171,11 @@ impl Motion {
         let Rebuilds { meshes: rebuilt, duration } =
             self.rebuild(&poor, samples, &found, acceleration, (most, control))?;
         stats.bottom_level += duration;
+        self.clock += 1;
+        for mesh in &mut self.meshes {
+            let shown = acceleration.shown(&acceleration.followers()[mesh.follower]);
+            mesh.built[shown].used = self.clock;
+        }
         let is_refitted = |choice: &Choice| choice.mode == Mode::Update && !rebuilt.contains(&choice.mesh);
         let refitted: Vec<f32> = (choices.iter().zip(&decays))
             .filter(|(choice, _)| is_refitted(choice))
@@ -172,14 +188,14 @@ impl Motion {
         Ok(stats)
     }
 
-    /// Some vertices of each mesh at `pose`, if the policy compares poses.
-    fn samples(&self, rig: &Rig, pose: &Pose, policy: UpdatePolicy) -> Vec<Vec<Vec3>> {
+    /// Some vertices of each mesh at the pose, if the policy compares poses.
+    fn samples(&self, moved: &Move<'_>, policy: UpdatePolicy) -> Vec<Vec<Vec3>> {
         let sample = |mesh: &DeformingMesh| {
             if policy != UpdatePolicy::Cache {
                 return Vec::new();
             }
-            let deformer = &rig.deformers[mesh.deformer];
-            let (weights, joints) = mesh.posed(deformer, pose);
+            let deformer = &moved.deformers()[mesh.deformer];
+            let (weights, joints) = mesh.posed(deformer, moved.pose);
             sample::posed(deformer, weights, joints)
         };
         self.meshes.iter().map(sample).collect()

@@ -22,8 +22,8 @@ pub(super) struct Rebuilds {
 }
 
 impl Motion {
-    /// Builds structures for the pose that the device is at, in place of those of `poor` or as further ones while there are
-    /// fewer than `most`. `samples` and `found` are of that pose, of all meshes.
+    /// Builds structures for the pose that the device is at, as further ones while there are fewer than
+    /// `most` of a mesh, else in place of the one that was not used for the longest time. `samples` and `found` are of that pose, of all meshes.
     pub(super) fn rebuild(
         &mut self,
         poor: &[Choice],
@@ -66,7 +66,9 @@ impl Motion {
             return Ok(unbuilt);
         }
         if mesh.built.len() >= most {
-            return Ok(choice.built);
+            // What has not been used for the longest time goes, as on the CPU.
+            let used = |i: &usize| (mesh.built[*i].used, *i != choice.built);
+            return Ok((0..mesh.built.len()).min_by_key(used).unwrap_or(choice.built));
         }
         let built = Built::new(&self.context, mesh.triangles)?;
         acceleration.keep_another(&self.context, mesh.follower)?;

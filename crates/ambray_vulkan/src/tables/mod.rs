@@ -123,8 +123,7 @@ impl Tables {
 
     /// What changes in the tables of placements with those of `scene`, the scene of these tables at another pose.
     pub(crate) fn changes(&self, scene: &Scene) -> (Change<layout::Instance>, Change<layout::ShapeInstance>) {
-        let shapes = placed::shape_instances(scene);
-        (self.instances.change(&placed::instances(scene)), self.shape_instances.change(&shapes))
+        (self.instances.change_to(scene), self.shape_instances.change_to(scene))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use ambray_scene::{Scene, surface::normal_matrix};
+use ambray_scene::{Motion, Scene, surface::normal_matrix};
 use bytemuck::Pod;
 use glam::{Affine3A, Mat3A};
 
@@ -34,7 +34,7 @@ impl<T: Pod + PartialEq> PlacedTable<T> {
     }
 
     /// Everything from the first to the last entry that `content` has otherwise.
-    pub(crate) fn change(&self, content: &[T]) -> Change<T> {
+    fn change(&self, content: &[T]) -> Change<T> {
         let differs = |i: &usize| self.content[*i] != content[*i];
         let first = (0..content.len()).find(differs).unwrap_or(content.len());
         let end = (first..content.len()).rev().find(differs).map_or(first, |last| last + 1);
@@ -69,29 +69,55 @@ impl<T: Pod + PartialEq> PlacedTable<T> {
     }
 }
 
-pub(crate) fn instances(scene: &Scene) -> Vec<layout::Instance> {
-    let instance = |instance: &ambray_scene::Instance| {
-        let m = instance.world_from_object.matrix3;
-        layout::Instance {
-            world_from_object: columns(&instance.world_from_object),
-            normal_from_object: normal_columns(m),
-            side: if m.determinant() < 0.0 { -1.0 } else { 1.0 },
-            mesh: instance.mesh,
-        }
-    };
+pub(super) fn instances(scene: &Scene) -> Vec<layout::Instance> {
     scene.instances.iter().map(instance).collect()
 }
 
-pub(crate) fn shape_instances(scene: &Scene) -> Vec<layout::ShapeInstance> {
-    let instance = |placed: &ambray_scene::ShapeInstance| layout::ShapeInstance {
+pub(super) fn shape_instances(scene: &Scene) -> Vec<layout::ShapeInstance> {
+    scene.shape_instances.iter().map(|placed| shape_instance(scene, placed)).collect()
+}
+
+impl PlacedTable<layout::Instance> {
+    /// What changes with the placements of `scene`. What is static stays.
+    pub(super) fn change_to(&self, scene: &Scene) -> Change<layout::Instance> {
+        let now = self.content.iter().zip(&scene.instances).map(|(kept, placed)| match placed.motion {
+            Motion::Static => *kept,
+            Motion::Rigid | Motion::Deforming => instance(placed),
+        });
+        self.change(&now.collect::<Vec<_>>())
+    }
+}
+
+impl PlacedTable<layout::ShapeInstance> {
+    /// As above.
+    pub(super) fn change_to(&self, scene: &Scene) -> Change<layout::ShapeInstance> {
+        let now = self.content.iter().zip(&scene.shape_instances).map(|(kept, placed)| match placed.motion {
+            Motion::Static => *kept,
+            Motion::Rigid | Motion::Deforming => shape_instance(scene, placed),
+        });
+        self.change(&now.collect::<Vec<_>>())
+    }
+}
+
+fn instance(placed: &ambray_scene::Instance) -> layout::Instance {
+    let m = placed.world_from_object.matrix3;
+    layout::Instance {
+        world_from_object: columns(&placed.world_from_object),
+        normal_from_object: normal_columns(m),
+        side: if m.determinant() < 0.0 { -1.0 } else { 1.0 },
+        mesh: placed.mesh,
+    }
+}
+
+fn shape_instance(scene: &Scene, placed: &ambray_scene::ShapeInstance) -> layout::ShapeInstance {
+    layout::ShapeInstance {
         world_from_object: columns(&placed.world_from_object),
         object_from_world: columns(&placed.world_from_object.inverse()),
         normal_from_object: normal_columns(placed.world_from_object.matrix3),
         reach: placed.reach(&scene.shapes[placed.shape as usize]),
         shape: placed.shape,
         material: placed.material,
-    };
-    scene.shape_instances.iter().map(instance).collect()
+    }
 }
 
 fn columns(m: &Affine3A) -> [[f32; 3]; 4] {

@@ -10,6 +10,7 @@ mod calls;
 mod common;
 mod compare;
 mod composition;
+mod deform;
 mod openness;
 mod random;
 mod sampling;
