@@ -59,9 +59,12 @@ fn check_memory(size: Size, extra: u64) -> anyhow::Result<()> {
 
 /// `options` with the choice of how structures follow what deforms, on every backend.
 fn following(options: &RendererOptions, updates: Option<Updates>) -> RendererOptions {
-    // The backends are about to get this choice; until then all ways are the same.
-    let _ = updates.map(Updates::policy);
-    options.clone()
+    let mut options = options.clone();
+    if let Some(updates) = updates {
+        options.build.updates.policy = updates.policy();
+        options.acceleration.updates.policy = updates.policy();
+    }
+    options
 }
 
 /// Refuses settings that ask for a moment of an animation where there is none.

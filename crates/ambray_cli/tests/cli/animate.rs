@@ -32,6 +32,9 @@ fn every_way_of_updating_plays_the_same_poses() {
         assert!(policy["decay"].as_f64().is_some_and(|decay| decay >= 1.0));
     }
     assert_eq!(policies[2]["slowdown"]["worst"], 1.0);
+    let counts = |name: &str| [&policies[1][name], &policies[2][name]].map(serde_json::Value::as_u64);
+    assert_eq!(counts("refitted"), [Some(10), Some(0)]);
+    assert_eq!(counts("rebuilt"), [Some(0), Some(10)]);
 }
 
 #[test]
