@@ -100,8 +100,8 @@ pub struct RenderArgs {
     #[command(flatten)]
     pub scene: SceneArgs,
     /// Picture to write, .png or .exr; - is stdout. Of a sequence (--frames), a run of # in the name is the number of the
-    /// frame. Or a video: .gif, or .mp4, .webm and .webp with ffmpeg; without --frames it shows the whole animation
-    /// [default: ambray.png, or ambray.exr with --format exr; ambray_####.png of a sequence]
+    /// frame, by default ambray_####. Or a video: .gif, or .mp4, .webm and .webp with ffmpeg; without --frames it shows the
+    /// whole animation [default: ambray.png, or ambray.exr with --format exr]
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
     /// File format [default: by the extension of OUT; png8 for .png]

@@ -63,7 +63,8 @@ pub struct AnimateArgs {
     /// Frames a second of --animate, a number or a fraction such as 30000/1001 [default: 30]
     #[arg(long, value_name = "RATE")]
     pub fps: Option<Rate>,
-    /// Frames to trace at each pose of --animate, of which the fastest counts [default: 3]
+    /// Frames to trace at each pose of --animate, of which the fastest counts [default: 3, or 1 with --temporal
+    /// on, which a second frame of the same pose would not measure]
     #[arg(long, value_name = "N", value_parser = |text: &str| whole::<u32>(text, 1, 1000))]
     pub repeats: Option<u32>,
 }

@@ -5,7 +5,10 @@
 
 use std::{fmt::Write as _, path::Path, time::Duration};
 
-use ambray::{PoseStats, Renderer, RendererOptions, StageTimes, settings::Settings};
+use ambray::{
+    PoseStats, Renderer, RendererOptions, StageTimes,
+    settings::{Settings, Temporal},
+};
 use anyhow::{anyhow, bail};
 use serde::Serialize;
 
@@ -117,7 +120,7 @@ pub(super) fn run(
     let mut report = AnimateReport {
         machine: Machine::detect(),
         warmup: args.warmup,
-        repeats: args.animate.repeats.unwrap_or(REPEATS),
+        repeats: repeats(args, settings.temporal),
         fps: rate.per_second(),
         settings: settings.clone(),
         scenes: Vec::new(),
@@ -166,6 +169,12 @@ fn measure(
     Ok(SceneAnimate { scene, animation, duration, poses, backend, build, policies })
 }
 
+/// Frames to trace at each pose.
+fn repeats(args: &BenchArgs, temporal: Temporal) -> u32 {
+    // Nothing moves between two frames of the same pose, which makes accumulation cheaper than it is.
+    args.animate.repeats.unwrap_or(if temporal == Temporal::On { 1 } else { REPEATS })
+}
+
 /// The animation that plays, and its duration.
 fn animation(settings: &Settings, source: &Source) -> anyhow::Result<(String, f32)> {
     let Some(rig) = &source.scene.rig else {
@@ -211,7 +220,7 @@ fn play(tracks: &mut [Track], timeline: &Timeline, count: u32, args: &BenchArgs)
                 .poses
                 .push(Pose { moved, frame: StageTimes { total: Duration::MAX, ..Default::default() } });
         }
-        for _ in 0..args.animate.repeats.unwrap_or(REPEATS) {
+        for _ in 0..repeats(args, settings.temporal) {
             for track in &mut *tracks {
                 let stats = track.renderer.measure(&settings, control).map_err(explained)?;
                 if let Some(pose) = track.poses.last_mut().filter(|pose| stats.times.total < pose.frame.total)
