@@ -3,11 +3,12 @@
 use ambray::{
     Control, Frame, Renderer,
     scene::{Scene, atrium},
+    vulkan::TraceMode,
 };
 use ambray_core::settings::{Auto, Sampling, Settings, Size, Temporal, Triple, Window};
 use conformance::{
     metrics::{Map, changed, flicker, masked_rmse, rmse},
-    moving, shared, views,
+    moving, parity, shared, views,
 };
 
 const FPS: f32 = 30.0;
@@ -262,4 +263,47 @@ fn other_settings_begin_anew() {
     assert_eq!(frame(&mut renderer, &small, 3).history[0], 1.0);
     assert_eq!(frame(&mut renderer, &settings(), 4).history[0], 1.0);
     assert_eq!(frame(&mut renderer, &on, 5).history[0], 1.0);
+}
+
+/// Sequences on devices are those of the processor: means, motion vectors, and how many frames the means cover.
+#[test]
+fn backends_accumulate_alike() {
+    let pan = |index: u32| [0.02 * index as f32, 2.2 + 0.01 * index as f32, 5.0];
+    let still = |_: u32| [0.0, 2.2, 5.0];
+    let scenes: [(&str, Scene, &dyn Fn(u32) -> [f32; 3]); 5] = [
+        ("removed", moving::removed(), &still),
+        ("sliding", moving::sliding(), &pan),
+        ("bending", moving::bending(), &still),
+        ("zoo", conformance::scenes::zoo(), &pan),
+        ("banner", ambray_scene::moving::banner(), &pan),
+    ];
+    for mode in [TraceMode::Pipeline, TraceMode::Query] {
+        let Some(device) = parity::vulkan(Scene::default(), mode) else { return };
+        for (name, scene, eye) in &scenes {
+            let mut cpu = Renderer::new(scene.clone());
+            let mut device = device.with_scene(scene.clone(), Control::default()).expect("a scene");
+            for index in 26..34 {
+                let settings = Settings {
+                    size: Size { width: 96, height: 54 },
+                    camera_position: Auto::Value(Triple(eye(index))),
+                    ..accumulating(&settings())
+                };
+                let expected = frame(&mut cpu, &settings, index);
+                let actual = frame(&mut device, &settings, index);
+                let name = format!("{name} {index} {mode:?}");
+                parity::assert_equal(&name, &expected, &actual);
+                let unequal = (0..expected.history.len()).filter(|&i| {
+                    let (a, b) = (&expected.gbuffer[i], &actual.gbuffer[i]);
+                    let frames = (expected.history[i] - actual.history[i]).abs();
+                    !(frames < 0.01 && a.motion.abs_diff_eq(b.motion, 1e-2))
+                });
+                let unequal = unequal.count();
+                assert!(unequal * 500 < expected.history.len(), "{name}: {unequal} pixels with another past");
+                let longest = actual.history.iter().copied().fold(0.0, f32::max);
+                assert!(longest > (index - 26) as f32, "{name}: no mean covers more than {longest} frames");
+            }
+            let messages = device.validation_messages();
+            assert!(messages.is_empty(), "{name}: {}", messages.join("\n"));
+        }
+    }
 }

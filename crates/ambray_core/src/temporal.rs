@@ -95,7 +95,7 @@ impl Accumulation {
     #[must_use]
     pub fn new(settings: &Settings, camera: &Camera, earlier: &Camera, scene_moved: bool) -> Self {
         let lit = matches!(settings.radiance_source, RadianceSource::Lit | RadianceSource::LitUnshadowed);
-        let tolerance = TOLERANCE / (settings.spp as f32).sqrt();
+        let tolerance = tolerance(settings);
         Self { filter: Filter::from(settings), scene_moved, camera_moved: camera != earlier, lit, tolerance }
     }
 
@@ -188,6 +188,12 @@ impl Accumulation {
         // From 16 down to 4; without any M there is no limit.
         if changing > 0.0 { longest.min(MOVING + (CHANGING - MOVING) * changing) } else { longest }
     }
+}
+
+/// Difference of openness between frame and mean that is left where something changes.
+#[must_use]
+pub fn tolerance(settings: &Settings) -> f32 {
+    TOLERANCE / (settings.spp as f32).sqrt()
 }
 
 /// Whether means of a frame with one of these settings and views are of any use for the other: the same light is measured,

@@ -1,11 +1,13 @@
 #version 460
-// Pass 2: the geometry-aware filter over one period of the interleaved pattern (spec §7), then composition (spec §4).
+// Pass 2: the geometry-aware filter over one period of the interleaved pattern (spec §7), accumulation over frames (spec
+// §12), then composition (spec §4).
 // Twin of ambray_core::filter. A workgroup keeps its tile with a border in shared memory: first what decides whether
 // neighbours are accepted, then one plane after the other.
 #extension GL_GOOGLE_include_directive : require
 #include "include/extensions.glsl"
 #include "include/camera.glsl"
 #include "include/compose.glsl"
+#include "include/temporal.glsl"
 
 layout(local_size_x = FILTER_WIDTH, local_size_y = FILTER_HEIGHT) in;
 
@@ -50,20 +52,6 @@ void load_guides() {
     load_values(VIEW.smooth_normals);
 }
 
-// Acceptance A(p, q).
-bool accepted(vec4 p, vec3 normal, float footprint, uint q) {
-    vec4 other = positions[q];
-    bool near;
-    switch (TEST) {
-        case TEST_PLANE: near = abs(dot(normal, other.xyz - p.xyz)) < VIEW.filter_by.tolerance * footprint; break;
-        case TEST_ABSOLUTE: near = abs(other.w - p.w) < VIEW.filter_by.tolerance; break;
-        case TEST_RELATIVE: near = abs(other.w - p.w) < VIEW.filter_by.tolerance * p.w; break;
-        default: near = true; break;
-    }
-    float least = VIEW.filter_by.cos_normal;
-    return near && (least <= -1.0 || dot(normal, values[q].xyz) > least);
-}
-
 // Weight of an offset along one axis, 0 outside the window.
 float axis_weight(int offset) {
     switch (WINDOW) {
@@ -85,7 +73,7 @@ uint accepted_taps() {
             uint q = tile_index(ivec2(x, y));
             bool in_window = axis_weight(x) * axis_weight(y) > 0.0;
             bool is_centre = x == 0 && y == 0;
-            if (in_window && (is_centre || (positions[q].w < FAR && accepted(p, normal, footprint, q)))) {
+            if (in_window && (is_centre || (positions[q].w < FAR && accepts(p, normal, footprint, positions[q], values[q].xyz)))) {
                 taps |= 1u << (uint(y + REACH) * TAPS + uint(x + REACH));
             }
         }
@@ -119,7 +107,9 @@ vec4 filtered_plane(uint64_t plane, uint taps) {
 void main() {
     load_guides();
     barrier();
-    bool is_surface = positions[tile_index(ivec2(0))].w < FAR;
+    vec4 guide = positions[tile_index(ivec2(0))];
+    vec3 normal = values[tile_index(ivec2(0))].xyz;
+    bool is_surface = guide.w < FAR;
     // Pixels that see nothing are copied.
     uint taps = is_surface ? accepted_taps() : 1u << (FILTER_REACH * TAPS + FILTER_REACH);
     vec4 ambient = filtered_plane(VIEW.ambient, taps);
@@ -133,6 +123,15 @@ void main() {
         return;
     }
     uint index = pixel.y * VIEW.size.x + pixel.x;
+    if (TEMPORAL != 0u) {
+        Mean mean = Mean(ambient, bent, 1.0);
+        if (is_surface) {
+            mean = accumulated(index, guide.xyz, normal, mean);
+        }
+        keep(index, guide, normal, mean);
+        ambient = mean.ambient;
+        bent = mean.bent;
+    }
     ambient = finish(ambient, VIEW.gather.ambient);
     Plane(VIEW.filtered).at[index] = ambient;
     Plane(VIEW.filtered_bent).at[index] = vec4(bent.xyz, 0.0);

@@ -9,7 +9,7 @@ use ambray_core::{
     control::Control,
     frame::{Frame, FrameStats, PoseStats, StageTimes},
     query::{QueryPoint, QueryResult},
-    settings::{NearRadiance, RadianceSource, Sampling, Settings, Thin},
+    settings::{NearRadiance, RadianceSource, Sampling, Settings, Temporal, Thin},
     trace::{Hit, Ray},
     view::View,
 };
@@ -190,6 +190,8 @@ impl VulkanBackend {
         points: &[QueryPoint],
         control: Control<'_>,
     ) -> Result<Vec<QueryResult>> {
+        // Points belong to no sequence.
+        let settings = &Settings { temporal: Temporal::Off, ..settings.clone() };
         let mut state = self.state();
         let mut results = Vec::with_capacity(points.len());
         for chunk in points.chunks(points::MOST) {
@@ -247,7 +249,9 @@ impl VulkanBackend {
     ) -> Result<StageTimes> {
         let (width, height) = view.camera.size();
         let inputs = Inputs { settings, view, size: [width, height], count: width * height };
-        let constants = state.prepare(&inputs)?;
+        let mut constants = state.prepare(&inputs)?;
+        let scene_moved = !state.rendered;
+        state.begin(&inputs, scene_moved, &mut constants)?;
         state.write_view(&constants);
         let passes = [
             Pass { work: StepWork::Trace(TracePass::Primary), cost: 1 },
@@ -261,7 +265,7 @@ impl VulkanBackend {
             has_lights: !view.lights.is_empty(),
         };
         let times = self.run(state, settings, &passes, [width, height], Some(&culling), control)?;
-        state.rendered = true;
+        state.end(&inputs);
         Ok(times)
     }
 

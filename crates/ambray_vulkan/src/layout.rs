@@ -18,7 +18,9 @@ pub use scene::{
 };
 pub use specialization::Specialization;
 pub(crate) use specialization::is_after_filter;
-pub use view::{FilterConstants, GatherConstants, Push, Ray, RayHit, Tally, View};
+pub use view::{
+    FilterConstants, GatherConstants, MeanPlanes, Push, Ray, RayHit, Tally, TemporalConstants, View,
+};
 
 use declare::constants;
 
@@ -65,6 +67,10 @@ constants! {
     SHAPE_CYLINDER: u32 = 3;
     SHAPE_FIELD: u32 = 4;
 
+    MOTION_STATIC: u32 = 0;
+    MOTION_RIGID: u32 = 1;
+    MOTION_DEFORMING: u32 = 2;
+
     LIGHT_DIRECTIONAL: u32 = 0;
     LIGHT_POINT: u32 = 1;
     LIGHT_SPOT: u32 = 2;
@@ -109,6 +115,15 @@ constants! {
     TEST_ABSOLUTE: u32 = 1;
     TEST_RELATIVE: u32 = 2;
     TEST_NONE: u32 = 3;
+
+    /// Accumulation over frames (`ambray_core::temporal`).
+    LONGEST: f32 = 1048576.0;
+    MOVING: f32 = 16.0;
+    CHANGING: f32 = 2.0;
+    CHANGING_SHARE: f32 = 0.1;
+    CHANGED_LEAST: f32 = 0.15;
+    CHANGED_MOST: f32 = 0.6;
+    CHANGED_FLOOR: f32 = 0.02;
 
     /// Pixels of a workgroup of the filter, and how far its taps reach.
     FILTER_WIDTH: u32 = 16;
@@ -172,8 +187,20 @@ mod tests {
     use ambray_core::settings::{
         Falloff, FilterTest, NearRadiance, Normals, RadianceSource, Sampling, Sequence, Thin, Window,
     };
+    use ambray_core::trace::Motion;
 
     use super::*;
+
+    #[test]
+    fn accumulation_has_one_set_of_constants() {
+        use ambray_core::temporal;
+        assert_eq!([LONGEST, MOVING], [temporal::LONGEST, temporal::MOVING]);
+        assert_eq!([CHANGING, CHANGING_SHARE], [temporal::CHANGING, temporal::CHANGING_SHARE]);
+        assert_eq!([CHANGED_LEAST, CHANGED_MOST], temporal::CHANGED);
+        assert_eq!(CHANGED_FLOOR, temporal::CHANGED_FLOOR);
+        let motions = [Motion::Static, Motion::Rigid, Motion::Deforming].map(|motion| motion as u32);
+        assert_eq!([MOTION_STATIC, MOTION_RIGID, MOTION_DEFORMING], motions);
+    }
 
     /// Choices of the settings are handed over as their discriminants.
     #[test]

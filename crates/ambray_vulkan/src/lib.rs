@@ -8,6 +8,7 @@ mod constants;
 mod context;
 pub mod cost;
 mod error;
+mod history;
 pub mod layout;
 mod memory;
 mod motion;

@@ -9,10 +9,11 @@ use ambray_core::{
     view::View,
 };
 use bytemuck::Pod;
-use glam::{Vec3, Vec4, Vec4Swizzles};
+use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 
 use crate::{
-    Context, Location, Result,
+    Buffer, Context, Location, Result,
+    history::History,
     layout::{NONE, Tally, is_after_filter},
     planes::{Plane, Transfer},
     state::State,
@@ -59,6 +60,13 @@ pub(crate) fn frame(
         let near = near_radiance(settings.radiance_source, view.ambient, raw.x, raw.yzw());
         *raw = near.extend(raw.x).wxyz();
     }
+    let history = match state.history() {
+        Some(kept) => {
+            move_pixels(&reader, kept, width, &mut gbuffer)?;
+            reader.read_buffer(kept.frames())?
+        }
+        None => vec![1.0; count],
+    };
     let stats = FrameStats { rays: ray_counts(&tallies), ..FrameStats::default() };
     Ok(Frame {
         width,
@@ -68,10 +76,27 @@ pub(crate) fn frame(
         ambient_raw,
         ambient: reader.vectors(Plane::Filtered)?,
         bent: reader.vectors(Plane::FilteredBent)?.iter().map(|v| v.xyz()).collect::<Vec<Vec3>>(),
-        history: vec![1.0; count],
+        history,
         view: view.clone(),
         stats,
     })
+}
+
+/// Fills in how far pixels have moved since the frame that was continued, if one was.
+fn move_pixels(
+    reader: &Reader<'_>,
+    history: &History,
+    width: u32,
+    gbuffer: &mut [GBufferPixel],
+) -> Result<()> {
+    let Some(camera) = history.continued() else { return Ok(()) };
+    let then: Vec<Vec4> = reader.read_buffer(history.then_positions())?;
+    for (i, (pixel, then)) in gbuffer.iter_mut().zip(then).enumerate() {
+        let place = camera.project(then.xyz()).filter(|_| pixel.is_surface());
+        let now = Vec2::new((i % width as usize) as f32, (i / width as usize) as f32);
+        pixel.motion = place.map_or(Vec2::ZERO, |(place, _)| now - place);
+    }
+    Ok(())
 }
 
 /// The ray counts of `count` pixels or points.
@@ -111,6 +136,11 @@ impl<'a> Reader<'a> {
 
     pub(crate) fn read<T: Pod>(&self, plane: Plane) -> Result<Vec<T>> {
         self.transfer.read(self.context, self.state.planes().buffer(plane), self.count)
+    }
+
+    /// The entries of a plane that is not of the usual ones.
+    fn read_buffer<T: Pod>(&self, plane: &Buffer) -> Result<Vec<T>> {
+        self.transfer.read(self.context, plane, self.count)
     }
 
     pub(crate) fn vectors(&self, plane: Plane) -> Result<Vec<Vec4>> {

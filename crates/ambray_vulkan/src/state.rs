@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use ambray_core::{
-    settings::{Sampling, Sequence, Settings},
+    settings::{Sampling, Sequence, Settings, Temporal},
     view::View,
 };
 use ash::vk::BufferUsageFlags;
@@ -11,6 +11,7 @@ use ash::vk::BufferUsageFlags;
 use crate::{
     Acceleration, Buffer, CommandSet, Context, DeviceKind, Location, Result, TopLevel, TraceMode,
     constants::{self, SampleTables},
+    history::History,
     layout::{self, Specialization},
     pipeline::{Interface, ProgramCache, Programs},
     planes::Planes,
@@ -46,6 +47,8 @@ pub(crate) struct State {
     /// Whether a frame of the current pose was rendered.
     pub(crate) rendered: bool,
     planes: Option<Planes>,
+    /// Where light is accumulated over frames.
+    history: Option<History>,
     samples: Option<(SampleKey, Buffer, Buffer)>,
     lights: Option<(Vec<layout::Light>, Buffer)>,
     programs: Arc<ProgramCache>,
@@ -76,6 +79,7 @@ impl State {
             rendered: false,
             budget: Budget::of(context.limits(), context.report().kind == DeviceKind::Software),
             planes: None,
+            history: None,
             samples: None,
             lights: None,
             programs: Arc::clone(programs),
@@ -102,6 +106,42 @@ impl State {
         view.gather.by_azimuth = by_azimuth;
         view.gather.lights = self.lights(inputs.view)?;
         Ok(view)
+    }
+
+    /// Begins a frame that continues the last one, or a sequence, if `settings` ask for that. `scene_moved` says whether the
+    /// scene has since the last frame.
+    pub(crate) fn begin(
+        &mut self,
+        inputs: &Inputs<'_>,
+        scene_moved: bool,
+        constants: &mut layout::View,
+    ) -> Result<()> {
+        let pixels = u64::from(inputs.count);
+        let wanted = inputs.settings.temporal == Temporal::On;
+        if !(wanted && self.history.as_ref().is_some_and(|history| history.suits(pixels))) {
+            self.history = None;
+        }
+        if wanted {
+            let history = match &mut self.history {
+                Some(history) => history,
+                none => none.insert(History::new(&self.context, pixels)?),
+            };
+            constants.temporal = history.begin(inputs.settings, inputs.view, scene_moved);
+        }
+        Ok(())
+    }
+
+    /// Ends a frame, all of which was rendered.
+    pub(crate) fn end(&mut self, inputs: &Inputs<'_>) {
+        self.rendered = true;
+        if let Some(history) = &mut self.history {
+            history.end(inputs.settings, inputs.view);
+        }
+    }
+
+    /// What the last frame left, where light is accumulated.
+    pub(crate) const fn history(&self) -> Option<&History> {
+        self.history.as_ref()
     }
 
     /// Writes the constants of the next submissions.

@@ -15,6 +15,7 @@ struct ShadedPoint {
     vec3 normal;
     uint sample_set;
     uint hash;
+    uint instance;
 };
 
 // Openness with its near radiance of each batch, and the mean open direction.
@@ -23,22 +24,27 @@ struct Gathered {
     vec4 second;
     vec4 both;
     vec3 bent;
+    // Share of 1 - O of the first batch due to what may move against the point; 0 unless light is accumulated.
+    float changing;
     Tally tally;
 };
 
 // Sums over the first batch. Directions are added in blocks of 64: single precision then keeps 65536 of them apart.
 struct Sums {
     float open;
+    float changing;
     vec3 bent;
     vec3 per_hit;
     float weight;
     vec3 weighted;
 };
 
-const Sums NO_SUMS = Sums(0.0, vec3(0.0), vec3(0.0), 0.0, vec3(0.0));
+const Sums NO_SUMS = Sums(0.0, 0.0, vec3(0.0), vec3(0.0), 0.0, vec3(0.0));
 
 Sums add(Sums a, Sums b) {
-    return Sums(a.open + b.open, a.bent + b.bent, a.per_hit + b.per_hit, a.weight + b.weight, a.weighted + b.weighted);
+    return Sums(
+        a.open + b.open, a.changing + b.changing, a.bent + b.bent, a.per_hit + b.per_hit, a.weight + b.weight,
+        a.weighted + b.weighted);
 }
 
 // Sums over the chords of the second batch.
@@ -48,6 +54,15 @@ struct ChordSums {
     float weight;
     vec3 weighted;
 };
+
+// Whether a hit on the instance `occluder` may move against a point on the instance `receiver`.
+bool may_change(uint receiver, uint occluder) {
+    uint motion = motion_of(occluder);
+    if (receiver == occluder) {
+        return motion == MOTION_DEFORMING;
+    }
+    return motion != MOTION_STATIC || motion_of(receiver) != MOTION_STATIC;
+}
 
 float measure(float d) {
     return openness_at(d, VIEW.gather.radius, VIEW.gather.reach, VIEW.gather.exponent, VIEW.gather.sigma);
@@ -108,6 +123,7 @@ Gathered gather(ShadedPoint point) {
         vec3 direction = world_direction(point, basis, j).xyz;
         float d = FAR;
         vec3 radiance = vec3(0.0);
+        bool changing = false;
         // A direction below the geometric horizon is blocked at once, without a ray (spec §5).
         if (dot(direction, point.geometric_normal) > 0.0) {
             Ray ray = Ray(origin, VIEW.gather.reach, direction, ray_seed(point.hash, j));
@@ -116,6 +132,7 @@ Gathered gather(ShadedPoint point) {
             if (hit.instance != NONE) {
                 gathered.tally.ambient_hits += 1u;
                 d = hit.t;
+                changing = TEMPORAL != 0u && may_change(point.instance, hit.instance);
                 if (NEAR_RADIANCE != NEAR_OFF) {
                     vec3 normal;
                     radiance = hit_radiance(ray, hit, hit.t * VIEW.gather.cone_width, gathered.tally, normal);
@@ -129,6 +146,7 @@ Gathered gather(ShadedPoint point) {
         }
         float mu = measure(d);
         block.open += mu;
+        block.changing += changing ? 1.0 - mu : 0.0;
         block.bent += mu * direction;
         block.per_hit += (1.0 - mu) * radiance;
         if (d < VIEW.gather.near_limit) {
@@ -155,6 +173,7 @@ Gathered gather(ShadedPoint point) {
     gathered.second = with_near(second, first, per_hit, sums, chords);
     gathered.both = with_near(min(first, second), first, per_hit, sums, chords);
     gathered.bent = sums.bent / count;
+    gathered.changing = sums.changing / count;
     return gathered;
 }
 

@@ -31,6 +31,9 @@ const uint SHAPE_BOX = 1u;
 const uint SHAPE_CAPSULE = 2u;
 const uint SHAPE_CYLINDER = 3u;
 const uint SHAPE_FIELD = 4u;
+const uint MOTION_STATIC = 0u;
+const uint MOTION_RIGID = 1u;
+const uint MOTION_DEFORMING = 2u;
 const uint LIGHT_DIRECTIONAL = 0u;
 const uint LIGHT_POINT = 1u;
 const uint LIGHT_SPOT = 2u;
@@ -66,6 +69,13 @@ const uint TEST_PLANE = 0u;
 const uint TEST_ABSOLUTE = 1u;
 const uint TEST_RELATIVE = 2u;
 const uint TEST_NONE = 3u;
+const float LONGEST = 1048576.0;
+const float MOVING = 16.0;
+const float CHANGING = 2.0;
+const float CHANGING_SHARE = 0.1;
+const float CHANGED_LEAST = 0.15;
+const float CHANGED_MOST = 0.6;
+const float CHANGED_FLOOR = 0.02;
 const uint FILTER_WIDTH = 16u;
 const uint FILTER_HEIGHT = 8u;
 const uint FILTER_REACH = 2u;
@@ -105,8 +115,9 @@ layout(constant_id = 8) const uint AFTER_FILTER = 0u;
 layout(constant_id = 9) const uint NORMALS = 0u;
 layout(constant_id = 10) const uint WINDOW = 2u;
 layout(constant_id = 11) const uint TEST = 0u;
-layout(constant_id = 12) const uint MASKED = 1u;
-layout(constant_id = 13) const uint SHAPES = 1u;
+layout(constant_id = 12) const uint TEMPORAL = 0u;
+layout(constant_id = 13) const uint MASKED = 1u;
+layout(constant_id = 14) const uint SHAPES = 1u;
 
 struct SceneTables {
     uint64_t placements;
@@ -144,6 +155,7 @@ struct Instance {
     mat3 normal_from_object;
     float side;
     uint mesh;
+    uint motion;
 };
 
 struct Mesh {
@@ -214,6 +226,7 @@ struct ShapeInstance {
     float reach;
     uint shape;
     uint material;
+    uint motion;
 };
 
 struct Light {
@@ -288,6 +301,31 @@ struct FilterConstants {
     float cos_normal;
 };
 
+struct MeanPlanes {
+    uint64_t positions;
+    uint64_t normals;
+    uint64_t ambient;
+    uint64_t bent;
+    uint64_t frames;
+};
+
+struct TemporalConstants {
+    MeanPlanes earlier;
+    MeanPlanes next;
+    uint64_t then_positions;
+    uint64_t then_normals;
+    vec3 eye;
+    vec3 forward;
+    vec3 right;
+    vec3 up;
+    float half_height;
+    uint orthographic;
+    uint has_earlier;
+    uint scene_moved;
+    uint camera_moved;
+    float tolerance;
+};
+
 struct View {
     GatherConstants gather;
     uint64_t positions;
@@ -306,6 +344,7 @@ struct View {
     uint64_t beauty;
     uint64_t inputs;
     uint64_t outputs;
+    TemporalConstants temporal;
     FilterConstants filter_by;
     vec3 eye;
     vec3 forward;

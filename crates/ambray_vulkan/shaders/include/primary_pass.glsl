@@ -3,15 +3,34 @@
 #define PRIMARY_PASS_GLSL
 
 #include "camera.glsl"
+#include "previous.glsl"
 #include "sampling.glsl"
 
 void write_nothing(uint index) {
+    if (TEMPORAL != 0u) {
+        Plane(VIEW.temporal.then_positions).at[index] = vec4(0.0);
+        Plane(VIEW.temporal.then_normals).at[index] = vec4(0.0);
+    }
     Plane(VIEW.positions).at[index] = vec4(0.0, 0.0, 0.0, FAR);
     Plane(VIEW.geometric).at[index] = vec4(0.0);
     Plane(VIEW.shading).at[index] = vec4(vec3(0.0), uintBitsToFloat(NONE));
     Plane(VIEW.smooth_normals).at[index] = vec4(vec3(0.0), uintBitsToFloat(NONE));
     Plane(VIEW.albedo).at[index] = vec4(0.0);
     Plane(VIEW.emission).at[index].rgb = VIEW.background;
+}
+
+// Where the point was in the last frame, and its normal there on the side that was seen. `normal` is the one now.
+void write_then(uint index, At at, vec3 normal) {
+    vec3 position = at.position;
+    if (VIEW.temporal.scene_moved != 0u && VIEW.temporal.has_earlier != 0u && motion_of(at.instance) != MOTION_STATIC) {
+        position = previous_position(at);
+        vec3 seen = VIEW.temporal.orthographic != 0u ? VIEW.temporal.forward : position - VIEW.temporal.eye;
+        vec3 geometric = previous_geometric_normal(at, normal);
+        normal = NORMALS == NORMALS_GEOMETRIC ? geometric : previous_normal(at, normal);
+        normal = towards(normal, dot(geometric, seen) > 0.0 ? -geometric : geometric);
+    }
+    Plane(VIEW.temporal.then_positions).at[index] = vec4(position, 0.0);
+    Plane(VIEW.temporal.then_normals).at[index] = vec4(normal, 0.0);
 }
 
 void write_surface(uint index, Ray ray, Hit hit) {
@@ -32,6 +51,9 @@ void write_surface(uint index, Ray ray, Hit hit) {
         case NORMALS_SHADING: break;
         case NORMALS_SMOOTH: bent_normal = smooth_normal; break;
         default: bent_normal = geometric_normal; smooth_normal = geometric_normal; break;
+    }
+    if (TEMPORAL != 0u) {
+        write_then(index, at, smooth_normal);
     }
     Plane(VIEW.positions).at[index] = vec4(at.position, view_depth(at.position));
     Plane(VIEW.geometric).at[index] = vec4(geometric_normal, at.reach);

@@ -48,4 +48,9 @@ ShapeInstance shape_instance(uint instance) {
     return ShapeInstances(SCENE.shape_instances).at[instance - SCENE.mesh_instances];
 }
 
+// Whether animations move the instance of a hit, a MOTION constant.
+uint motion_of(uint instance) {
+    return is_shape(instance) ? shape_instance(instance).motion : Instances(SCENE.instances).at[instance].motion;
+}
+
 #endif

@@ -71,6 +71,8 @@ structures! {
         side: f32,
         /// Index of the mesh.
         mesh: u32,
+        /// A `MOTION_` constant.
+        motion: u32,
     }
 
     /// Where the attributes of a mesh begin in the tables; none where it lacks them.
@@ -197,6 +199,8 @@ structures! {
         shape: u32,
         /// Index of the material.
         material: u32,
+        /// A `MOTION_` constant.
+        motion: u32,
     }
 
     /// A light (`ambray_core::light`).

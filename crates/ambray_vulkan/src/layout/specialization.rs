@@ -1,6 +1,6 @@
 //! Specialisation constants: one shader for all settings, compiled for those in use.
 
-use ambray_core::settings::{Settings, Thin, ThinMinimum};
+use ambray_core::settings::{Settings, Temporal, Thin, ThinMinimum};
 
 macro_rules! specialization {
     ($( $(#[$meta:meta])* $name:ident $constant:ident = $default:literal, )*) => {
@@ -49,6 +49,8 @@ specialization! {
     window WINDOW = 2,
     /// `TEST_` constant.
     test TEST = 0,
+    /// 1 where light is accumulated over frames.
+    temporal TEMPORAL = 0,
     /// 1 where the scene has triangles that are not opaque.
     masked MASKED = 1,
     /// 1 where the scene has shapes.
@@ -72,6 +74,7 @@ impl Specialization {
             normals: settings.normals as u32,
             window: settings.filter as u32,
             test: settings.filter_test as u32,
+            temporal: (settings.temporal == Temporal::On).into(),
             masked: masked.into(),
             shapes: shapes.into(),
         }

@@ -41,6 +41,53 @@ structures! {
         cos_normal: f32,
     }
 
+    /// What is kept of each pixel from frame to frame (`ambray_core::temporal::Mean` and the guide of the filter): arrays of
+    /// one entry a pixel.
+    MeanPlanes {
+        /// `vec4`: position, view depth.
+        positions: u64,
+        /// `vec4`: normal without normal map.
+        normals: u64,
+        /// `vec4`: openness and near radiance after the filter.
+        ambient: u64,
+        /// `vec4`: bent normal, share of 1 - O that may change.
+        bent: u64,
+        /// `float`: frames of the mean.
+        frames: u64,
+    }
+
+    /// Accumulation over frames (`ambray_core::temporal`).
+    TemporalConstants {
+        /// Of the last frame.
+        earlier: MeanPlanes,
+        /// For the next frame.
+        next: MeanPlanes,
+        /// `vec4`: where the surface points were in the last frame.
+        then_positions: u64,
+        /// `vec4`: their normals there.
+        then_normals: u64,
+        /// Camera of the last frame: eye point.
+        eye: [f32; 3],
+        /// Unit viewing direction.
+        forward: [f32; 3],
+        /// Unit vector to the right.
+        right: [f32; 3],
+        /// Unit vector up in the picture.
+        up: [f32; 3],
+        /// Half the height of the picture at depth 1, or anywhere in parallel projection.
+        half_height: f32,
+        /// 1 for parallel projection.
+        orthographic: u32,
+        /// 1 where there is a last frame to go on from.
+        has_earlier: u32,
+        /// 1 where anything in the scene has moved since.
+        scene_moved: u32,
+        /// 1 where the camera has.
+        camera_moved: u32,
+        /// Difference of openness between frame and mean that is left where something changes.
+        tolerance: f32,
+    }
+
     /// Camera, estimate, filter, and the planes of a frame: arrays of one entry a pixel, row by row from the top.
     View {
         /// The estimate.
@@ -63,7 +110,8 @@ structures! {
         ambient: u64,
         /// `vec4`: openness and near radiance of the second batch.
         second: u64,
-        /// `vec4`: bent normal before the filter, openness of the first batch.
+        /// `vec4`: bent normal before the filter, openness of the first batch; where light is accumulated, the share of 1 - O
+        /// that may change.
         bent: u64,
         /// [`Tally`].
         tallies: u64,
@@ -77,6 +125,8 @@ structures! {
         inputs: u64,
         /// Outputs of a batch: [`RayHit`]s, or the values of a function under test.
         outputs: u64,
+        /// Accumulation over frames.
+        temporal: TemporalConstants,
         /// Acceptance test of the filter.
         filter_by: FilterConstants,
         /// Eye point.

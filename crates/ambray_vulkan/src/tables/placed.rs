@@ -106,6 +106,7 @@ fn instance(placed: &ambray_scene::Instance) -> layout::Instance {
         normal_from_object: normal_columns(m),
         side: if m.determinant() < 0.0 { -1.0 } else { 1.0 },
         mesh: placed.mesh,
+        motion: placed.motion as u32,
     }
 }
 
@@ -117,6 +118,7 @@ fn shape_instance(scene: &Scene, placed: &ambray_scene::ShapeInstance) -> layout
         reach: placed.reach(&scene.shapes[placed.shape as usize]),
         shape: placed.shape,
         material: placed.material,
+        motion: placed.motion as u32,
     }
 }
 
