@@ -1,6 +1,13 @@
 //! Scenes that move: the same picture on every backend at many times of each clip, as if the scene had been opened there.
 
-use ambray::{Control, Frame, Renderer, scene::Scene, vulkan::TraceMode};
+use ambray::{
+    BackendChoice, BuildOptions, Control, Frame, Renderer, RendererOptions,
+    scene::{
+        Scene,
+        animation::{UpdatePolicy, Updates},
+    },
+    vulkan::{AccelerationOptions, TraceMode},
+};
 use ambray_core::settings::{Auto, Settings, Size};
 use conformance::{moving, parity, shared};
 
@@ -175,4 +182,47 @@ fn what_is_not_there_is_named() {
     let timed = Settings { animation: Auto::Auto, ..settings("0", 1.0) };
     let error = still.render(&timed, Control::default()).expect_err("nothing moves");
     assert_eq!(error.to_string(), "animation 0 is not in the scene: it has none");
+}
+
+/// However structures follow what deforms, rays hit the same: bit for bit on the processor, up to rounding on devices.
+#[test]
+fn refitted_structures_are_as_good_as_new_ones() {
+    const POLICIES: [UpdatePolicy; 4] =
+        [UpdatePolicy::Rebuild, UpdatePolicy::Refit, UpdatePolicy::Auto, UpdatePolicy::Cache];
+    let scenes = [
+        ("bending", moving::bending()),
+        ("banner", ambray_scene::moving::banner()),
+        ("CesiumMan", shared::load("CesiumMan/glTF/CesiumMan.gltf").unwrap_or_default()),
+    ];
+    for (name, scene) in scenes.iter().filter(|(_, scene)| scene.rig.is_some()) {
+        for backend in [BackendChoice::Cpu, BackendChoice::Vulkan] {
+            if backend == BackendChoice::Vulkan && parity::vulkan(Scene::default(), MODES[1]).is_none() {
+                continue;
+            }
+            let mut renderers = POLICIES.map(|policy| {
+                let updates = Updates { policy, ..Updates::default() };
+                let options = RendererOptions {
+                    backend,
+                    build: BuildOptions { updates, ..BuildOptions::default() },
+                    acceleration: AccelerationOptions { updates, ..AccelerationOptions::default() },
+                    trace: TraceMode::Query,
+                    ..RendererOptions::default()
+                };
+                Renderer::open(scene.clone(), &options, Control::default()).expect("opened")
+            });
+            for time in times(scene, "0") {
+                let settings = settings("0", time);
+                let [expected, others @ ..] =
+                    renderers.each_mut().map(|renderer| render(renderer, &settings));
+                for (other, policy) in others.iter().zip(&POLICIES[1..]) {
+                    let name = format!("{name} at {time} {backend:?} {policy:?}");
+                    if backend == BackendChoice::Cpu {
+                        assert!(other.ambient_raw == expected.ambient_raw, "{name}");
+                    } else {
+                        parity::assert_equal(&name, &expected, other);
+                    }
+                }
+            }
+        }
+    }
 }
