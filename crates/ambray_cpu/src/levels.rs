@@ -57,7 +57,7 @@ impl<const W: usize> Levels<W> {
     /// Moves everything to where `scene` has it: the scene that this was built for, in another pose.
     pub(crate) fn update(&mut self, scene: &Scene, options: &BuildOptions) -> PoseStats {
         let start = Instant::now();
-        let fates = self.deform(scene, options.updates, options.quality);
+        let fates = self.deform(scene, options.updates, options.quality.at_a_pose());
         let bottom_level = start.elapsed();
         let moved = self.placements.iter().any(|placement| placement.moves);
         if moved {

@@ -6,7 +6,11 @@ pub struct Updates {
     /// The policy.
     pub policy: UpdatePolicy,
     /// Surface-area cost of a refitted structure, over that of its build, above which it counts as poor: 1 is as good as
-    /// new.
+    /// new. Both costs are relative to the box around everything. Default 1.5.
+    ///
+    /// Measured on the processor, rays through refitted trees take 1.05 to 1.4 times as long as through new ones where this
+    /// is near 1.5, 1.3 to 1.6 times near 2.2, and 2.3 times near 5. A new tree costs as much as 3 or 4 ambient rays a
+    /// triangle, so rebuilding earlier pays only where meshes are small beside the picture.
     pub poor: f32,
     /// Most structures that are kept of one mesh, each built in another pose; at least 1.
     pub poses: u32,
