@@ -175,7 +175,9 @@ pub struct PoseStats {
     pub rebuilt: u32,
     /// Structures kept for what deforms, all poses counted.
     pub kept: u32,
-    /// Surface-area cost of the refitted structures over that of their builds: the largest; 1 where none was refitted.
+    /// How much of their quality the refitted structures have lost: the largest loss; 1 where nothing was refitted, or lost.
+    /// On the processor the surface-area cost of the tree over that at its build. A device does not show its trees: there
+    /// the cost of clusters of triangles as they were at the build, over that of clusters made for this pose.
     pub decay: f32,
 }
 
