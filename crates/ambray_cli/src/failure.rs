@@ -2,7 +2,10 @@
 
 use std::{fmt, io, process::ExitCode};
 
-use crate::{signals::Interrupted, terminal};
+use crate::{
+    signals::Interrupted,
+    terminal::{self, one_line},
+};
 
 /// Exit code of every error.
 pub const EXIT_ERROR: u8 = 2;
@@ -69,10 +72,6 @@ fn lines(error: &anyhow::Error) -> Vec<String> {
     let mut lines = vec![format!("ambray: error: {}", one_line(&format!("{error:#}")))];
     lines.extend(error.downcast_ref::<Hinted>().map(|hinted| format!("  hint: {}", hinted.hint)));
     lines
-}
-
-fn one_line(text: &str) -> String {
-    text.lines().map(str::trim).filter(|line| !line.is_empty()).collect::<Vec<_>>().join(" ")
 }
 
 #[cfg(test)]

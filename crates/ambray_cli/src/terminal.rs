@@ -1,6 +1,7 @@
 //! What the user reads: stdout that may be closed early, stderr that may be absent. Nothing here panics.
 
 use std::{
+    borrow::Cow,
     io::{self, Write as _},
     sync::atomic::{AtomicUsize, Ordering},
 };
@@ -26,14 +27,30 @@ pub fn print_bytes(bytes: &[u8]) -> anyhow::Result<()> {
     Ok(stdout.flush()?)
 }
 
-/// Writes a line to stderr, if there is one.
-pub fn say(line: &str) {
-    let _ = writeln!(io::stderr(), "{line}");
+/// Writes lines to stderr, if there is one.
+pub fn say(lines: &str) {
+    let _ = writeln!(io::stderr(), "{}", harmless(lines));
 }
 
 /// Tells of something odd that does not stop the work.
 pub fn warn(message: &str) {
-    say(&format!("ambray: warning: {message}"));
+    say(&format!("ambray: warning: {}", one_line(message)));
+}
+
+/// The lines of `text` as one.
+#[must_use]
+pub fn one_line(text: &str) -> String {
+    text.lines().map(str::trim).filter(|line| !line.is_empty()).collect::<Vec<_>>().join(" ")
+}
+
+/// `text` with its control characters spelled out, but ends of lines: names from files must not command the terminal.
+fn harmless(text: &str) -> Cow<'_, str> {
+    let is_command = |c: char| c.is_control() && c != '\n';
+    if !text.contains(is_command) {
+        return Cow::Borrowed(text);
+    }
+    let spell = |c: char| if is_command(c) { c.escape_default().to_string() } else { c.to_string() };
+    Cow::Owned(text.chars().map(spell).collect())
 }
 
 /// Shows warnings that libraries log.
@@ -80,6 +97,12 @@ impl Log for Warnings {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn names_do_not_command_the_terminal() {
+        assert_eq!(harmless("a\nC:\\é 'b'"), "a\nC:\\é 'b'");
+        assert_eq!(harmless("\u{1b}[2J\r\t\u{7}\u{7f}\u{9b}2J"), "\\u{1b}[2J\\r\\t\\u{7}\\u{7f}\\u{9b}2J");
+    }
 
     #[test]
     fn messages_of_the_validation_layer_are_an_error_in_the_end() {

@@ -152,7 +152,7 @@ impl VulkanBackend {
         self.acceleration.stats()
     }
 
-    /// Bytes of the planes of a frame, a pixel.
+    /// Bytes of the planes of a frame, a pixel; what `Temporal::On` keeps for the next frame comes on top.
     #[must_use]
     pub fn bytes_per_pixel() -> u64 {
         crate::planes::Plane::ALL.iter().map(|plane| plane.stride()).sum()

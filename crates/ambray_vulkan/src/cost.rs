@@ -11,7 +11,8 @@ use crate::{
 };
 
 /// Bytes that a pass reads and writes at least for a pixel that sees a surface: every plane it touches, once and as whole
-/// entries, since memory moves in larger pieces. Scene data and acceleration structures come on top.
+/// entries, since memory moves in larger pieces. Scene data, acceleration structures and what `Temporal::On` keeps come on
+/// top.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PassBytes {
     /// `primary`, `direct`, `ambient` or `filter`.

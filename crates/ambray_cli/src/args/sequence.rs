@@ -9,8 +9,6 @@ const HEADING: &str = "Sequence";
 /// What was expected of `--frames`.
 const FRAMES: &str = "A..B (B is not shown), A..=B, either with :STEP, or one number, such as 0..120";
 const EMPTY: &str = "there is no frame in it, the end must be larger than the start";
-/// Most frames of a sequence.
-const MOST: usize = 1_000_000;
 /// What was expected of `--fps`.
 const RATE: &str = "frames a second from 0.001 to 1000, such as 30, 23.976 or 30000/1001";
 
@@ -47,10 +45,14 @@ pub struct Frames {
 }
 
 impl Frames {
-    /// The first `count` frames, at least one.
+    /// Most frames of a sequence.
+    pub const MOST: usize = 1_000_000;
+
+    /// The first `count` frames, at least one; `None` if these are more than [`Self::MOST`].
     #[must_use]
-    pub fn first(count: u32) -> Self {
-        Self { first: 0, last: count.max(1) - 1, step: 1 }
+    pub fn first(count: u32) -> Option<Self> {
+        let frames = Self { first: 0, last: count.max(1) - 1, step: 1 };
+        (frames.count() <= Self::MOST).then_some(frames)
     }
 
     /// The numbers in ascending order.
@@ -100,7 +102,7 @@ impl FromStr for Frames {
         match last.map(|last| Self { first, last, step }) {
             _ if step == 0 => Err("the step must be at least 1".to_owned()),
             Some(frames) if frames.last < first => Err(EMPTY.to_owned()),
-            Some(frames) if frames.count() > MOST => Err(format!("more than {MOST} frames")),
+            Some(frames) if frames.count() > Self::MOST => Err(format!("more than {} frames", Self::MOST)),
             Some(frames) => Ok(frames),
             None => Err(EMPTY.to_owned()),
         }
@@ -230,6 +232,8 @@ mod tests {
         }
         assert_eq!("0..120".parse::<Frames>().unwrap().to_string(), "0..=119");
         assert_eq!("7".parse::<Frames>().unwrap().to_string(), "7");
+        assert_eq!(Frames::first(1_000_000).map(|frames| frames.count()), Some(1_000_000));
+        assert_eq!([1_000_001, u32::MAX].map(Frames::first), [None; 2]);
         assert_eq!("0..=9:3".parse::<Frames>().unwrap().to_string(), "0..=9:3");
     }
 

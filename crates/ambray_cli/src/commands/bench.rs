@@ -79,7 +79,7 @@ pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
         bail!("--json is not allowed with output or settings on stdout: both write there");
     }
     target.iter().chain(&saved).try_for_each(Target::check)?;
-    check_memory(settings.size, 0)?;
+    check_memory(&settings, 0)?;
     if cfg!(debug_assertions) {
         terminal::warn("this is not a release build: times say little");
     }

@@ -44,7 +44,8 @@ struct PassCost {
     pass: &'static str,
     /// Median time.
     ms: f64,
-    /// Bytes a pixel that sees a surface, each plane once; scene and acceleration structures come on top.
+    /// Bytes a pixel that sees a surface, each plane once; scene, acceleration structures and what --temporal on keeps
+    /// come on top.
     read_bytes_per_pixel: u64,
     written_bytes_per_pixel: u64,
     /// Time to move these bytes at the bandwidth.
@@ -133,7 +134,8 @@ impl CostReport {
                 known(pass.times_floor, 1)
             );
         }
-        text.push_str("         bytes a pixel are of planes, each once; scene and acceleration structures come on top\n");
+        text.push_str("         bytes a pixel are of planes, each once; scene and acceleration structures come on top,\n");
+        text.push_str("         and what --temporal on keeps from frame to frame\n");
         text
     }
 }

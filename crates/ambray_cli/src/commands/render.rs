@@ -47,7 +47,7 @@ fn still(request: &Request<'_>) -> anyhow::Result<()> {
     }
     let files: Vec<_> = plan.files().into_iter().map(|(target, _)| target).collect();
     request.check_saved(&files)?;
-    check_memory(settings.size, plan.bytes_per_pixel())?;
+    check_memory(settings, plan.bytes_per_pixel())?;
 
     let source = request.open()?;
     let (scene, label) = (SceneReport::of(&source), source.label);

@@ -30,7 +30,7 @@ pub(super) fn run(request: &Request<'_>, frames: Frames) -> anyhow::Result<()> {
     let Request { args, settings, .. } = request;
     let pictures = Pictures::new(args, frames)?;
     request.check_saved(&pictures.targets())?;
-    check_memory(settings.size, pictures.plan.bytes_per_pixel())?;
+    check_memory(settings, pictures.plan.bytes_per_pixel())?;
     let source = request.open()?;
     let timeline = timeline(request, &source, frames)?;
     let label = match timeline.history(frames) {

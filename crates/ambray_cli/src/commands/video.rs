@@ -35,7 +35,7 @@ pub(super) fn run(request: &Request<'_>, kind: Kind, path: &Path) -> anyhow::Res
     let rate = args.sequence.fps.unwrap_or_default().every(args.sequence.frames.map_or(1, |f| f.step()));
     kind.check(settings.size, rate).with_context(context)?;
     request.check_saved(std::slice::from_ref(&target))?;
-    check_memory(settings.size, BYTES_PER_PIXEL)?;
+    check_memory(settings, BYTES_PER_PIXEL)?;
     let source = request.open()?;
     let frames = match args.sequence.frames {
         Some(frames) => frames,
@@ -93,6 +93,10 @@ fn whole(request: &Request<'_>, source: &Source) -> anyhow::Result<Frames> {
     };
     // A name that is not there is told by the renderer, with those that are.
     let duration = playing(&request.settings, rig).map_or(0.0, |clips| rig.duration(clips));
-    let count = request.args.sequence.fps.unwrap_or_default().frames_in(f64::from(duration));
-    Ok(Frames::first(count))
+    let rate = request.args.sequence.fps.unwrap_or_default();
+    Frames::first(rate.frames_in(f64::from(duration))).ok_or_else(|| {
+        let most = Frames::MOST;
+        let error = anyhow!("the animation lasts {duration} s, more than {most} frames at {rate} fps");
+        with_hint(error, "--frames 0..300 chooses a part of it")
+    })
 }

@@ -9,6 +9,7 @@ pub mod numbering;
 pub mod png;
 pub mod tone_map;
 pub mod video;
+pub mod whole;
 
 use std::{
     path::{Path, PathBuf},
@@ -140,7 +141,7 @@ impl Plan {
     }
 }
 
-/// Whether the file at `path` is what [`Plan::write`] would write, as far as its head tells.
+/// Whether the file at `path` is what [`Plan::write`] would write, as far as its head and its end tell.
 fn is_made(path: &Path, planes: &[Aov], format: Format, settings: &str, scene: &str) -> bool {
     let Ok(Some(head)) = Head::read(path) else { return false };
     let channels = if format == Format::Exr { exr::channel_names(planes) } else { Vec::new() };
@@ -151,7 +152,7 @@ fn is_made(path: &Path, planes: &[Aov], format: Format, settings: &str, scene: &
         settings: Some(settings.to_owned()),
         channels,
     };
-    head == expected
+    head == expected && whole::is_whole(path, format)
 }
 
 fn decide_format(target: &Target, format: Option<Format>) -> anyhow::Result<Format> {

@@ -49,6 +49,11 @@ impl Buffer {
 /// A floor of 4 × 4 units, and above it a lid of two triangles. The animation "Slide" moves the lid by 1 along x within one
 /// second and back in another; "Bend" bends it up by a morph target in half a second.
 pub(super) fn gltf() -> String {
+    lasting(2.0)
+}
+
+/// The same where "Slide" ends after so many seconds.
+pub(super) fn lasting(end: f32) -> String {
     let mut buffer = Buffer::default();
     let quad = |half: f32, y: f32| {
         let corners = [[-half, y, -half], [-half, y, half], [half, y, half], [half, y, -half]];
@@ -58,7 +63,7 @@ pub(super) fn gltf() -> String {
     let lid = buffer.floats(&quad(0.8, 0.5), 3);
     let bend: Vec<f32> = quad(0.8, 0.5).chunks(3).flat_map(|p| [0.0, 0.5 * (p[0] + 0.8), 0.0]).collect();
     let bend = buffer.floats(&bend, 3);
-    let seconds = buffer.floats(&[0.0, 1.0, 2.0], 1);
+    let seconds = buffer.floats(&[0.0, 1.0, end], 1);
     let places = buffer.floats(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0], 3);
     let half = buffer.floats(&[0.0, 0.25, 0.5], 1);
     let weights = buffer.floats(&[0.0, 1.0, 0.0], 1);

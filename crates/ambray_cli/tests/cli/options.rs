@@ -113,6 +113,18 @@ fn wrong_command_lines_are_told_in_one_line() {
     assert_eq!(bench.files(), [""; 0]);
 }
 
+#[test]
+fn names_in_scenes_do_not_command_the_terminal() {
+    let bench = Bench::animated();
+    let scene = super::animated::gltf().replace("Slide", r"\u001b[2J\u009b31m\r\nambray: fine");
+    bench.write("moving.gltf", &scene);
+    for asked in ["--animation=nope", "--animation=\u{1b}[2J"] {
+        let run = bench.animate(&[asked]).fails(&[r"\u{1b}[2J\u{9b}31m", "Bend"]);
+        assert_eq!(run.stderr.lines().count(), 1, "{}", run.stderr);
+        assert!(!run.stderr.trim_end().contains(char::is_control), "{:?}", run.stderr);
+    }
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn pictures_beyond_the_memory_are_refused() {

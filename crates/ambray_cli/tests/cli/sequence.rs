@@ -168,6 +168,28 @@ fn layers_are_kept_only_if_they_are_the_same() {
 }
 
 #[test]
+fn pictures_cut_short_are_made_again() {
+    let bench = Bench::animated();
+    for (name, format) in [("0.png", "png8"), ("0.png", "png16"), ("0.exr", "exr")] {
+        let output = name.replace('0', "#");
+        let line = ["--frames=0..1", "-o", &output, "--format", format, "--resume", "--json"];
+        let kept = || {
+            let run = bench.animate(&line).succeeds();
+            let report: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+            report["kept"] == 1
+        };
+        assert!(!kept(), "{format}");
+        let whole = bench.read(name);
+        for length in [whole.len() - 1, whole.len() - 12, whole.len() / 2] {
+            assert!(kept(), "{format}");
+            fs::write(bench.path(name), &whole[..length]).expect("file");
+            assert!(!kept(), "{format}, {length} of {} bytes", whole.len());
+            assert_eq!(bench.read(name), whole, "{format}");
+        }
+    }
+}
+
+#[test]
 fn accumulated_frames_are_the_same_when_resumed() {
     let bench = Bench::animated();
     let sequence = ["--frames=0..4", "--fps=10", "--temporal=on", "-o", "#.png"];

@@ -68,6 +68,19 @@ fn what_is_about_pictures_is_refused() {
     assert_eq!(bench.made(), [""; 0]);
 }
 
+#[test]
+fn animations_without_end_are_refused() {
+    let bench = Bench::animated();
+    for seconds in [99_999.0, 1e9] {
+        bench.write("moving.gltf", &super::animated::lasting(seconds));
+        let told = format!("the animation lasts {seconds} s, more than 1000000 frames at 30 fps");
+        bench.animate(&["-o", "a.gif"]).fails(&[&told, "hint: --frames 0..300"]);
+    }
+    bench.animate(&["-o", "a.gif", "--frames=0..2", "--fps=10"]).succeeds();
+    fs::remove_file(bench.path("a.gif")).expect("a video of a part");
+    assert_eq!(bench.made(), [""; 0]);
+}
+
 /// Counts what comes in, and writes the count with its arguments into the video.
 #[cfg(unix)]
 const STAND_IN: &str = "#!/bin/sh\nfor last; do :; done\necho \"$(wc -c) $*\" > \"${last#file:}\"\n";
