@@ -9,16 +9,23 @@ use rayon::prelude::*;
 
 use crate::bvh::build;
 use crate::bvh::layout::{Blas, Bounds, Placed, Tlas};
+use crate::kernel::{self, Direct};
 use crate::motion::{Deforming, Fate};
 use crate::parts::{Parts, Placement};
-use crate::{AlphaTest, BuildOptions, Isa, Quality, Stats, Width, kernel};
+use crate::{AlphaTest, BuildOptions, Isa, Quality, Stats, Width};
 
+/// Most instances that rays try one by one, in packets, instead of finding them in the tree over all. The hits are the same.
+const MOST_DIRECT: usize = 16;
+
+/// The trees of a scene's triangles, and what leads to them.
 #[derive(Debug)]
 pub(crate) struct Levels<const W: usize> {
     /// What is in world space, and never moves.
     baked: Blas<W>,
-    /// What is placed.
+    /// What is placed, but for the instances in `direct`.
     placed: Tlas<W>,
+    /// What is placed where it is: deforming meshes whose vertices are in world space, as those of skinned ones are.
+    direct: Vec<Direct>,
     /// Trees that are placed: those of meshes that deform first, as in `deforming`.
     meshes: Vec<Blas<W>>,
     deforming: Vec<Deforming<W>>,
@@ -42,6 +49,7 @@ impl<const W: usize> Levels<W> {
         let mut levels = Self {
             baked,
             placed: Tlas::default(),
+            direct: Vec::new(),
             meshes,
             deforming,
             placements: parts.placements,
@@ -94,10 +102,15 @@ impl<const W: usize> Levels<W> {
     /// Builds the tree over what is placed.
     fn place(&mut self, scene: &Scene) {
         let (mut instances, mut boxes) = (Vec::new(), Vec::new());
+        self.direct.clear();
         for &Placement { tree, instance, .. } in &self.placements {
             let world_from_object = scene.instances[instance as usize].world_from_object;
             let bounds = self.meshes[tree as usize].bounds;
-            if let Some((placed, world)) = place(tree, instance, world_from_object, bounds) {
+            let Some((placed, world)) = place(tree, instance, world_from_object, bounds) else { continue };
+            let deforms = (tree as usize) < self.deforming.len();
+            if deforms && world_from_object == Affine3A::IDENTITY && self.direct.len() < MOST_DIRECT {
+                self.direct.push(Direct { tree, instance });
+            } else {
                 instances.push(placed);
                 boxes.push(world);
             }
@@ -114,6 +127,7 @@ impl<const W: usize> Levels<W> {
             baked: &self.baked,
             placed: &self.placed,
             meshes: &self.meshes,
+            direct: &self.direct,
             alpha,
             instance_stack: self.instance_stack,
             stack: self.stack,
@@ -134,7 +148,7 @@ impl<const W: usize> Levels<W> {
             triangles: self.in_use().map(|tree| tree.triangles).sum(),
             dropped: self.dropped,
             baked_instances: self.baked_instances,
-            placed_instances: self.placed.instances.len(),
+            placed_instances: self.placed.instances.len() + self.direct.len(),
             shapes: 0,
             nodes: self.in_use().map(|tree| tree.nodes.len()).sum::<usize>() + self.placed.nodes.len(),
             leaf_blocks: self.in_use().map(|tree| tree.blocks.len()).sum(),

@@ -19,7 +19,8 @@ use crate::{AlphaTest, BuildOptions, Isa, Opaque, Stats, Width};
 /// in object space, and a tree over their instances leads there.
 ///
 /// Where the scene has a rig, what it moves is never baked: moving meshes have trees of their own too, which follow their
-/// vertices if they deform ([`BuildOptions::updates`]), and [`update`](Self::update) places them anew at each pose.
+/// vertices if they deform ([`BuildOptions::updates`]), and [`update`](Self::update) places them anew at each pose. Rays go
+/// in packets and without a transform through deforming meshes that are in world space, as skinned ones are.
 ///
 /// Shapes given by formulas have a tree of their own, and are traced after the triangles.
 ///

@@ -273,6 +273,25 @@ fn deforming_instances_move() {
     );
 }
 
+/// Many meshes with vertices in world space, as skinned ones have: more than rays try one by one.
+#[test]
+fn many_meshes_in_world_space() {
+    let mut random = Random(6);
+    let triangles = random_triangles(&mut random, 100);
+    let scene = moving(triangles.chunks(5).map(soup).collect(), &[Motion::Deforming; 20]);
+    check(
+        scene,
+        &Holes,
+        3,
+        |scene, at| rays_about(scene, at as u32),
+        |scene, _| {
+            for mesh in 0..20 {
+                positions(scene, mesh).iter_mut().for_each(|position| *position += random.cube() * 0.1);
+            }
+        },
+    );
+}
+
 /// Placed shapes follow too, also where none of them can be hit at first.
 #[test]
 fn shapes_move() {

@@ -60,12 +60,33 @@ pub(crate) struct Scene<'a, const W: usize> {
     pub(crate) placed: &'a Tlas<W>,
     /// Object-space trees of these meshes.
     pub(crate) meshes: &'a [Blas<W>],
+    /// Instances whose object space is the world.
+    pub(crate) direct: &'a [Direct],
     pub(crate) alpha: &'a dyn AlphaTest,
     /// Stack entries that the walk over instances may need.
     pub(crate) instance_stack: usize,
     /// Stack entries that all walks together may need.
     pub(crate) stack: usize,
     pub(crate) packets: bool,
+}
+
+/// Instance of a mesh with a tree of its own that rays go through as they are.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Direct {
+    /// Index among the trees of placed meshes.
+    pub(crate) tree: u32,
+    /// Index in the scene.
+    pub(crate) instance: u32,
+}
+
+impl<'a, const W: usize> Scene<'a, W> {
+    /// Trees in world space, with the instance where it is one for the whole tree.
+    #[inline(always)]
+    pub(crate) fn world_trees(&self) -> impl Iterator<Item = (&'a Blas<W>, Option<u32>)> + use<'a, W> {
+        let (meshes, direct) = (self.meshes, self.direct);
+        let direct = direct.iter().map(|one| (&meshes[one.tree as usize], Some(one.instance)));
+        std::iter::once((self.baked, None)).chain(direct)
+    }
 }
 
 /// Stack entries that a walk through `depth` levels may need: each level leaves fewer than `W`, the last adds `W`.

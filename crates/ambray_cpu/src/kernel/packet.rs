@@ -1,4 +1,4 @@
-//! Sixteen rays at once through the tree of baked triangles.
+//! Sixteen rays at once through the trees in world space.
 //!
 //! Nodes are culled for the whole packet by interval arithmetic (Boulos et al. 2006), which stands on the same monotone
 //! operations as the slab test and so never culls what the slab test of a single ray keeps. A child's box is tested against
@@ -14,7 +14,7 @@ use super::lanes::Lanes;
 use super::ray::Prepared;
 use super::triangle::{self, Entry};
 use super::{Query, Scene, single, slab};
-use crate::bvh::layout::{Block, Child, Node};
+use crate::bvh::layout::{Blas, Block, Child, Node};
 
 /// Up to this many live rays go on one by one. Measured on Sponza.
 const ALONE: u32 = 3;
@@ -48,11 +48,20 @@ pub(crate) fn trace<const W: usize, L: Lanes<W>, R: Lanes<16>, Q: Query>(
         best.t = t_max;
     }
     // Rays of one direction class a time; deinterleaved rays are mostly all of one.
-    let mut waiting = if scene.baked.nodes.is_empty() { 0 } else { bundle.able };
+    let nothing = scene.baked.nodes.is_empty() && scene.direct.is_empty();
+    let mut waiting = if nothing { 0 } else { bundle.able };
     while waiting != 0 {
         let group = bundle.group(waiting);
         waiting &= !group;
-        walk::<W, L, R, Q>(scene, rays, bundle, group, &mut best, scratch);
+        let mut packet = bundle.packet::<R>(group);
+        let mut open = group;
+        for (tree, instance) in scene.world_trees() {
+            if open == 0 {
+                break;
+            }
+            let trunk = Trunk { tree, instance, alpha: scene.alpha };
+            open = walk::<W, L, R, Q>(&trunk, rays, &mut packet, open, &mut best, scratch);
+        }
     }
     for (lane, (ray, answer)) in rays.iter().zip(answers).enumerate().take(LANES) {
         let best = &mut best[lane];
@@ -68,24 +77,40 @@ pub(crate) fn trace<const W: usize, L: Lanes<W>, R: Lanes<16>, Q: Query>(
     }
 }
 
-/// Walks the rays of `group` through the tree of baked triangles.
+/// A tree in world space.
+struct Trunk<'a, const W: usize> {
+    tree: &'a Blas<W>,
+    /// As in [`Entry`].
+    instance: Option<u32>,
+    alpha: &'a dyn crate::AlphaTest,
+}
+
+impl<'a, const W: usize> Trunk<'a, W> {
+    #[inline(always)]
+    fn entry(&self, ray: &Ray) -> Entry<'a> {
+        Entry { instance: self.instance, near: 0.0, seed: ray.seed, alpha: self.alpha }
+    }
+}
+
+/// Walks the `open` rays of a packet through a tree; they are those without an answer that nothing can change. Returns which
+/// rays are so still.
 #[inline(always)]
 fn walk<const W: usize, L: Lanes<W>, R: Lanes<16>, Q: Query>(
-    scene: &Scene<'_, W>,
+    trunk: &Trunk<'_, W>,
     rays: &[Ray],
-    bundle: &Bundle,
-    group: u32,
+    packet: &mut Packet,
+    mut open: u32,
     best: &mut [Hit; LANES],
     scratch: &mut Scratch,
-) {
-    let tree = scene.baked;
-    let mut packet = bundle.packet::<R>(group);
+) -> u32 {
+    let tree = trunk.tree;
+    if tree.nodes.is_empty() {
+        return open;
+    }
     let stack = &mut scratch.packet;
     let mut top = 0;
     let mut child = Child::ROOT;
-    let mut live = group;
-    // Rays without an answer that nothing can change.
-    let mut open = group;
+    let mut live = open;
     loop {
         let block = child.is_leaf().then(|| &tree.blocks[child.index()]);
         if live.count_ones() <= block.map_or(ALONE, |block| block.count.max(ALONE + 1) - 1) {
@@ -93,7 +118,7 @@ fn walk<const W: usize, L: Lanes<W>, R: Lanes<16>, Q: Query>(
                 let lane = live.trailing_zeros() as usize % LANES;
                 live &= live - 1;
                 let ray = packet.ray(lane);
-                let entry = Entry { instance: None, near: 0.0, seed: rays[lane].seed, alpha: scene.alpha };
+                let entry = trunk.entry(&rays[lane]);
                 let best = &mut best[lane];
                 let done = match block {
                     Some(block) => triangle::block::<W, L, Q>(block, &ray, &entry, best),
@@ -105,7 +130,7 @@ fn walk<const W: usize, L: Lanes<W>, R: Lanes<16>, Q: Query>(
         } else if let Some(block) = block {
             let before = live;
             for triangle in 0..block.count as usize {
-                live = one_triangle::<W, R, Q>(scene, block, triangle, &mut packet, rays, live, best);
+                live = one_triangle::<W, R, Q>(trunk, block, triangle, packet, rays, live, best);
                 if live == 0 {
                     break;
                 }
@@ -114,7 +139,7 @@ fn walk<const W: usize, L: Lanes<W>, R: Lanes<16>, Q: Query>(
         } else {
             let node = &tree.nodes[child.index()];
             let limit = packet.limit.load::<R>().largest();
-            let (mut mask, near) = children::<W, L>(node, &packet, limit);
+            let (mut mask, near) = children::<W, L>(node, packet, limit);
             let near = near.to_array();
             let bottom = top;
             while mask != 0 {
@@ -142,13 +167,13 @@ fn walk<const W: usize, L: Lanes<W>, R: Lanes<16>, Q: Query>(
         }
         loop {
             if top == 0 || open == 0 {
-                return;
+                return open;
             }
             top -= 1;
             // SAFETY: entries below `top` were written before `top` moved past them.
             let pending = unsafe { stack[top].assume_init() };
             let node = &tree.nodes[pending.node as usize];
-            live = meets::<W, R>(node, pending.slot as usize, &packet);
+            live = meets::<W, R>(node, pending.slot as usize, packet);
             if live != 0 {
                 child = pending.child;
                 break;
@@ -198,7 +223,7 @@ fn meets<const W: usize, R: Lanes<16>>(node: &Node<W>, slot: usize, packet: &Pac
 /// Lets the `live` rays see one triangle; the arithmetic is that of [`triangle::block`]. Returns which rays still live.
 #[inline(always)]
 fn one_triangle<const W: usize, R: Lanes<16>, Q: Query>(
-    scene: &Scene<'_, W>,
+    trunk: &Trunk<'_, W>,
     block: &Block<W>,
     lane_of_triangle: usize,
     packet: &mut Packet,
@@ -224,7 +249,7 @@ fn one_triangle<const W: usize, R: Lanes<16>, Q: Query>(
         let lane = candidates.trailing_zeros() as usize % LANES;
         candidates &= candidates - 1;
         let ray = packet.ray(lane);
-        let entry = Entry { instance: None, near: 0.0, seed: rays[lane].seed, alpha: scene.alpha };
+        let entry = trunk.entry(&rays[lane]);
         let covered = [v[lane], w[lane], determinant[lane]];
         if triangle::candidate(block, lane_of_triangle, &ray, &entry, covered, &mut best[lane]) {
             if Q::ANY {

@@ -26,9 +26,14 @@ pub(crate) fn trace<const W: usize, L: Lanes<W>, Q: Query>(
         return Hit::MISS;
     };
     let mut best = Hit { t: ray.t_max, ..Hit::MISS };
-    let entry = Entry { instance: None, near: 0.0, seed: ray.seed, alpha: scene.alpha };
-    let done = blas::<W, L, Q>(scene.baked, Child::ROOT, &prepared, &entry, &mut best, stack);
-    let answered = Q::ANY && done;
+    let mut answered = false;
+    for (tree, instance) in scene.world_trees() {
+        let entry = Entry { instance, near: 0.0, seed: ray.seed, alpha: scene.alpha };
+        answered = blas::<W, L, Q>(tree, Child::ROOT, &prepared, &entry, &mut best, stack) && Q::ANY;
+        if answered {
+            break;
+        }
+    }
     if !answered && !scene.placed.nodes.is_empty() {
         instances::<W, L, Q>(scene, ray, &prepared, &mut best, stack);
     }
