@@ -1,5 +1,7 @@
 //! Scenes that move: the same picture on every backend at many times of each clip, as if the scene had been opened there.
 
+use std::sync::atomic::AtomicBool;
+
 use ambray::{
     BackendChoice, BuildOptions, Control, Frame, Renderer, RendererOptions,
     scene::{
@@ -224,5 +226,26 @@ fn refitted_structures_are_as_good_as_new_ones() {
                 }
             }
         }
+    }
+}
+
+/// A move that was stopped leaves nothing half moved: neither on the device, nor cameras and lights.
+#[test]
+fn a_move_that_was_stopped_shows_in_no_picture() {
+    let scene = moving::sliding();
+    let mut renderers = vec![Renderer::new(scene.clone())];
+    renderers.extend(
+        parity::vulkan(Scene::default(), MODES[1])
+            .map(|device| device.with_scene(scene.clone(), Control::default()).expect("a scene")),
+    );
+    for mut renderer in renderers {
+        let view = with_view(&mut renderer, &settings("0", 0.5));
+        let at = |time: f32| Settings { time: Auto::Value(time), ..view.clone() };
+        let expected = render(&mut renderer, &at(0.5)).ambient;
+        let cancel = AtomicBool::new(true);
+        let control = Control { cancel: &cancel, ..Control::default() };
+        assert!(renderer.render(&at(3.5), control).is_err());
+        assert!(render(&mut renderer, &at(0.5)).ambient == expected, "{:?}", renderer.machine());
+        assert!(render(&mut renderer, &at(3.5)).ambient != expected);
     }
 }

@@ -62,7 +62,7 @@ pub struct RendererOptions {
 #[derive(Debug)]
 pub(crate) struct Backends {
     scene: Arc<Scene>,
-    /// Where the scene was moved; `None` while it is as it was opened.
+    /// What the scene shows; `None` if it does not move, or if nobody knows since a move has failed.
     pose: Option<Pose>,
     build: BuildOptions,
     vulkan: Option<VulkanBackend>,
@@ -95,8 +95,8 @@ impl Backends {
         control: &Control<'_>,
     ) -> Result<Self, VulkanError> {
         let mut backends = Self {
+            pose: scene.rig.as_ref().map(|rig| rig.pose(None)),
             scene,
-            pose: None,
             build: options.build,
             vulkan: None,
             cpu: OnceLock::new(),
@@ -118,8 +118,8 @@ impl Backends {
     /// The same backend with another scene.
     pub(crate) fn with_scene(&self, scene: Arc<Scene>, control: &Control<'_>) -> Result<Self, VulkanError> {
         let mut backends = Self {
+            pose: scene.rig.as_ref().map(|rig| rig.pose(None)),
             scene,
-            pose: None,
             build: self.build,
             vulkan: None,
             cpu: OnceLock::new(),
@@ -156,8 +156,20 @@ impl Backends {
         }
     }
 
-    /// Moves the scene to `pose`, for the current backend.
+    /// Moves the scene to `pose`, for the current backend. Nothing happens where it is there already.
     pub(crate) fn pose(&mut self, pose: &Pose, control: &Control<'_>) -> Result<PoseStats, RenderError> {
+        let still = PoseStats { decay: 1.0, ..PoseStats::default() };
+        let rig = self.scene.rig.clone();
+        // Unknown until it is there: after a failure the next move starts from wherever this one ended.
+        if let (Some(now), Some(rig)) = (self.pose.take(), rig)
+            && rig.shows_the_same(&now, pose)
+        {
+            if now != *pose {
+                Arc::make_mut(&mut self.scene).place(pose);
+            }
+            self.pose = Some(pose.clone());
+            return Ok(still);
+        }
         // Made ready before the scene is taken: nobody else may hold it, or it would be copied.
         self.current();
         let mut scene = std::mem::take(&mut self.scene);
@@ -173,8 +185,9 @@ impl Backends {
             }
         };
         self.scene = scene;
+        let moved = moved?;
         self.pose = Some(pose.clone());
-        moved
+        Ok(moved)
     }
 
     /// The scene at its pose. On a device the vertices of what deforms are as they were when it was opened.

@@ -14,7 +14,7 @@ use ambray_core::{
     view::View,
 };
 use ambray_cpu::{BackendError, BuildOptions};
-use ambray_scene::{Scene, animation::Moment};
+use ambray_scene::Scene;
 use ambray_vulkan::{AccelerationStats, DeviceReport, TraceMode, VulkanError};
 use glam::Vec3;
 
@@ -128,8 +128,6 @@ pub struct Renderer {
     bounds: (Vec3, Vec3),
     /// How the scene, as it was opened, is looked at; found when it is first needed.
     framing: OnceLock<Framing>,
-    /// What the scene shows; `None` is the scene as it was opened.
-    moment: Option<Moment>,
 }
 
 impl Renderer {
@@ -171,7 +169,7 @@ impl Renderer {
     fn with_backends(backends: Backends) -> Self {
         // An empty scene is looked at as if a box of two units were there.
         let bounds = backends.scene().bounds().unwrap_or((Vec3::NEG_ONE, Vec3::ONE));
-        Self { backends, bounds, framing: OnceLock::new(), moment: None }
+        Self { backends, bounds, framing: OnceLock::new() }
     }
 
     /// Makes another scene ready for the same backend. A device keeps its compiled programs.
@@ -274,7 +272,7 @@ impl Renderer {
     pub fn pose(&mut self, settings: &Settings, control: Control<'_>) -> Result<PoseStats, RenderError> {
         let start = Instant::now();
         let moment = resolve::moment(settings, self.scene())?;
-        let Some(rig) = self.scene().rig.clone().filter(|_| moment != self.moment) else {
+        let Some(rig) = self.scene().rig.clone() else {
             return Ok(PoseStats { decay: 1.0, ..PoseStats::default() });
         };
         if resolve::needs_framing(settings, self.scene()) {
@@ -288,7 +286,6 @@ impl Renderer {
             }
             done => done?,
         };
-        self.moment = moment;
         stats.total = start.elapsed();
         Ok(stats)
     }

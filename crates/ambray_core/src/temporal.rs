@@ -39,9 +39,9 @@ pub const CHANGING_SHARE: f32 = 0.1;
 pub const CHANGED: [f32; 2] = [0.15, 0.6];
 /// What is added to M before differences are compared with it: changes that are small against this are left alone.
 pub const CHANGED_FLOOR: f32 = 0.02;
-/// Difference of openness that the few rays of a frame explain after the filter, times √N: about two standard deviations
-/// (spec §11: the sampling part).
-pub const TOLERANCE: f32 = 0.04;
+/// Difference of openness that the few rays of a frame explain after the filter, times √N: about a standard deviation
+/// (spec §11: the sampling part). Twice as much halved the flicker gained, but left ghosts twice as dark.
+pub const TOLERANCE: f32 = 0.02;
 
 /// What is kept of a pixel from frame to frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -185,7 +185,7 @@ impl Accumulation {
         }
         let changing = (share / CHANGING_SHARE).clamp(0.0, 1.0);
         let changing = if self.lit { 1.0 } else { changing };
-        // From 16 down to 4; without any M there is no limit.
+        // From MOVING down to CHANGING; where nothing can change there is no such limit.
         if changing > 0.0 { longest.min(MOVING + (CHANGING - MOVING) * changing) } else { longest }
     }
 }

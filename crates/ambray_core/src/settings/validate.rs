@@ -20,8 +20,8 @@ const MAX_SIDE: u32 = 32_768;
 const MAX_PIXELS: u64 = 1 << 28;
 /// Rays per pixel.
 const MAX_SPP: u32 = 65_536;
-/// Longest time in an animation, seconds: single precision tells milliseconds apart there, if barely.
-const MAX_TIME: f32 = 1e5;
+/// Longest time in an animation, seconds: single precision tells milliseconds apart there.
+const MAX_TIME: f32 = 1e4;
 /// Rays per pixel with all pairs of the paper's second batch: about half a million chords per pixel would follow from 1024.
 const MAX_PAPER_SPP: u32 = 256;
 
@@ -59,7 +59,7 @@ impl Settings {
         );
 
         let time = self.time.unwrap_or(0.0);
-        check((0.0..=MAX_TIME).contains(&time), "time", self.time.to_string(), "auto or 0 to 100000 seconds");
+        check((0.0..=MAX_TIME).contains(&time), "time", self.time.to_string(), "auto or 0 to 10000 seconds");
         check((1..=MAX_SPP).contains(&self.spp), "spp", self.spp.to_string(), "1 to 65536");
         let paper_fits = self.thin != Thin::Paper || self.spp <= MAX_PAPER_SPP;
         check(

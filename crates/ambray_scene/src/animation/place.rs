@@ -1,5 +1,6 @@
 //! Moves a scene to a pose.
 
+use std::cell::OnceCell;
 use std::sync::Arc;
 
 use ambray_core::light::Light;
@@ -11,7 +12,7 @@ use crate::{Motion, Scene, SceneCamera};
 
 impl Scene {
     /// Moves what nodes carry to `pose`, which is of this scene's rig: instances, shapes, cameras and lights. Cameras and
-    /// lights that would lose their direction stay.
+    /// lights that have no direction at `pose` are where they are at rest, whatever was shown before.
     ///
     /// Instances may become singular, such as those scaled to nothing: no ray hits them then. Those whose transform has a
     /// number beyond [`LARGEST_COORDINATE`] are scaled to nothing at the origin.
@@ -28,11 +29,13 @@ impl Scene {
         for (instance, attachment) in self.shape_instances.iter_mut().zip(&rig.shape_instances) {
             place(&mut instance.world_from_object, instance.motion, attachment);
         }
+        let rest = OnceCell::new();
+        let at_rest = |node: u32| rest.get_or_init(|| rig.pose(None)).world[node as usize];
         for (camera, &node) in self.cameras.iter_mut().zip(&rig.cameras) {
-            place_camera(camera, pose.world[node as usize]);
+            let _ = place_camera(camera, pose.world[node as usize]) || place_camera(camera, at_rest(node));
         }
         for (light, &node) in self.lights.iter_mut().zip(&rig.lights) {
-            place_light(light, pose.world[node as usize]);
+            let _ = place_light(light, pose.world[node as usize]) || place_light(light, at_rest(node));
         }
     }
 
@@ -91,4 +94,68 @@ pub(crate) fn place_light(light: &mut Light, world: DAffine3) -> bool {
 /// Unit image of `axis`, if it has a direction.
 fn direction(world: DAffine3, axis: DVec3) -> Option<Vec3> {
     world.transform_vector3(axis).try_normalize().map(|direction| direction.as_vec3())
+}
+
+#[cfg(test)]
+mod tests {
+    use ambray_core::camera::Projection;
+
+    use super::*;
+    use crate::animation::{Channel, Clip, Clips, Interpolation, Local, Moment, Node, Property, Rig, Trs};
+
+    /// A camera and a sun turn with their node, which has no size from 1 s on.
+    fn scene() -> Scene {
+        let mut scene = Scene::default();
+        scene.cameras.push(SceneCamera {
+            name: String::new(),
+            position: Vec3::ZERO,
+            forward: Vec3::NEG_Z,
+            up: Vec3::Y,
+            projection: Projection::Orthographic { height: 1.0 },
+        });
+        scene.lights.push(Light::Directional { to_light: Vec3::Z, irradiance: Vec3::ONE });
+        let half = std::f32::consts::FRAC_1_SQRT_2;
+        let channel = |property, interpolation, values: Vec<f32>| Channel {
+            node: 0,
+            property,
+            interpolation,
+            times: vec![0.0, 1.0],
+            values,
+        };
+        let turn = vec![0.0, 0.0, 0.0, 1.0, 0.0, half, 0.0, half];
+        let channels = vec![
+            channel(Property::Rotation, Interpolation::Linear, turn),
+            channel(Property::Scale, Interpolation::Step, vec![1.0, 1.0, 1.0, 0.0, 0.0, 0.0]),
+        ];
+        scene.rig = Some(Arc::new(Rig {
+            nodes: vec![Node {
+                name: String::new(),
+                parent: None,
+                local: Local::Trs(Trs::default()),
+                weights: Vec::new(),
+            }],
+            clips: vec![Clip { name: String::new(), duration: 1.0, channels }],
+            cameras: vec![0],
+            lights: vec![0],
+            ..Rig::default()
+        }));
+        scene
+    }
+
+    #[test]
+    fn what_loses_its_direction_does_not_remember_others() {
+        let rest = scene();
+        let place = |scene: &mut Scene, time: f64| {
+            let rig = scene.rig.clone().unwrap();
+            scene.place(&rig.pose(Some(&Moment { clips: Clips::One(0), time, repeat: false })));
+        };
+        let mut direct = scene();
+        place(&mut direct, 1.0);
+        let mut by_another = scene();
+        place(&mut by_another, 0.7);
+        assert!(by_another.cameras[0].forward.x < -0.5, "{}", by_another.cameras[0].forward);
+        place(&mut by_another, 1.0);
+        assert_eq!((&direct.cameras, &direct.lights), (&rest.cameras, &rest.lights));
+        assert_eq!((&by_another.cameras, &by_another.lights), (&rest.cameras, &rest.lights));
+    }
 }

@@ -140,6 +140,17 @@ impl Rig {
         Pose::of(self, &locals, &weights)
     }
 
+    /// Whether what rays can hit is the same at two poses of this rig: only cameras and lights may differ.
+    #[must_use]
+    pub fn shows_the_same(&self, a: &Pose, b: &Pose) -> bool {
+        let stays = |attachment: &Attachment| {
+            attachment.node.is_none_or(|node| a.world[node as usize] == b.world[node as usize])
+        };
+        self.instances.iter().chain(&self.shape_instances).all(stays)
+            && a.joints == b.joints
+            && a.weights == b.weights
+    }
+
     /// The clip of this name, or of this number.
     #[must_use]
     pub fn clip(&self, name: &str) -> Option<usize> {
