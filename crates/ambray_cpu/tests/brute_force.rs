@@ -224,3 +224,23 @@ fn baking_keeps_to_its_budget() {
     assert_eq!(tracer.stats().baked_instances, 2);
     assert_eq!(tracer.stats().placed_instances, copies as usize + 1);
 }
+
+/// A hundred thousand triangles in one place, and as many beside: the builder must not take the square of them.
+#[test]
+fn crowds_in_one_place_are_no_trap() {
+    let triangle = [Vec3::ZERO, Vec3::X, Vec3::Y];
+    let beside = |i: usize| triangle.map(|p| p + Vec3::new(2.0 + 0.001 * i as f32, 0.0, 0.0));
+    let all: Vec<_> = std::iter::repeat_n(triangle, 100_000).chain((0..1000).map(beside)).collect();
+    let scene = scene(vec![soup(&all)]);
+    for quality in Quality::ALL {
+        let options = BuildOptions { quality, ..BuildOptions::default() };
+        let tracer = Tracer::build(&scene, Opaque, options);
+        assert!(tracer.stats().depth < 64, "{quality:?}: {} levels", tracer.stats().depth);
+        let ray =
+            |x: f32| Ray { origin: Vec3::new(x, 0.2, 1.0), t_max: 10.0, direction: Vec3::NEG_Z, seed: 0 };
+        let mut hits = [Hit::MISS; 2];
+        tracer.closest_hits(&[ray(0.2), ray(3.5)], &mut hits);
+        assert_eq!((hits[0].triangle, hits[0].t), (0, 1.0));
+        assert!(hits[1].is_hit() && hits[1].triangle >= 100_000);
+    }
+}

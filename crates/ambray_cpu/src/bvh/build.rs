@@ -7,6 +7,7 @@ use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 
 use super::collapse::{self, Costs};
 use super::layout::{Blas, Block, Bounds, Child, Node, Placed, Tlas};
+use super::places::Places;
 use crate::Quality;
 
 /// Largest coordinate that is traced. Beyond it the triangle test's products could overflow, and so could the builder's
@@ -49,22 +50,22 @@ impl Binary {
             return;
         }
         let before = self.nodes.len();
-        self.halve(primitives);
+        self.halve(primitives, Bounds::EMPTY);
         if before > 0 {
             self.join(before - 1, self.nodes.len() - 1);
         }
     }
 
-    fn halve(&mut self, primitives: &[u32]) {
+    /// Adds a tree of `primitives`, at least one, all of which have the box `bounds`.
+    fn halve(&mut self, primitives: &[u32], bounds: Bounds) {
         if let [primitive] = primitives {
-            let children = [BinaryNode::LEAF, *primitive];
-            self.nodes.push(BinaryNode { bounds: Bounds::EMPTY, leaves: 1, children });
+            self.nodes.push(BinaryNode { bounds, leaves: 1, children: [BinaryNode::LEAF, *primitive] });
             return;
         }
         let (left, right) = primitives.split_at(primitives.len() / 2);
-        self.halve(left);
+        self.halve(left, bounds);
         let middle = self.nodes.len() - 1;
-        self.halve(right);
+        self.halve(right, bounds);
         self.join(middle, self.nodes.len() - 1);
     }
 
@@ -108,11 +109,14 @@ fn binary(boxes: &[Bounds], quality: Quality) -> Binary {
         Quality::Balanced => (PlocSearchDistance::Medium, SortPrecision::U64, 3, 0.05),
         Quality::BestTrace => (PlocSearchDistance::Medium, SortPrecision::U128, 1, 1.0),
     };
+    // One box for all that are in one place.
+    let places = Places::of(boxes);
+    let aabb = |b: &Bounds| obvhs::aabb::Aabb::new(b.lo.to_vec3a(), b.hi.to_vec3a());
     let aabbs: Vec<_> =
-        boxes.iter().map(|b| obvhs::aabb::Aabb::new(b.lo.to_vec3a(), b.hi.to_vec3a())).collect();
-    let indices = (0..u32::try_from(boxes.len()).expect("fewer than 2^32 primitives")).collect();
+        (0..places.count()).map(|place| aabb(&boxes[places.primitives(place)[0] as usize])).collect();
+    let indices = (0..u32::try_from(aabbs.len()).expect("fewer than 2^32 primitives")).collect();
     let mut tree =
-        PlocBuilder::with_capacity(boxes.len()).build(distance, &aabbs, indices, precision, threshold);
+        PlocBuilder::with_capacity(aabbs.len()).build(distance, &aabbs, indices, precision, threshold);
     ReinsertionOptimizer::default().run(&mut tree, ratio, None);
 
     // Post-order without recursion: a node is visited again, after its children, with `expanded` set.
@@ -122,13 +126,9 @@ fn binary(boxes: &[Bounds], quality: Quality) -> Binary {
     while let Some((index, expanded)) = pending.pop() {
         let node = &tree.nodes[index as usize];
         if node.is_leaf() {
-            let primitive = tree.primitive_indices[node.first_index as usize];
-            finished.push(binary.nodes.len());
-            binary.nodes.push(BinaryNode {
-                bounds: boxes[primitive as usize],
-                leaves: 1,
-                children: [BinaryNode::LEAF, primitive],
-            });
+            let primitives = places.primitives(tree.primitive_indices[node.first_index as usize] as usize);
+            binary.halve(primitives, boxes[primitives[0] as usize]);
+            finished.push(binary.nodes.len() - 1);
         } else if expanded {
             let right = finished.pop().expect("both children are finished before their parent");
             let left = finished.pop().expect("both children are finished before their parent");

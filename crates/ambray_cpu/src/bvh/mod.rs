@@ -3,4 +3,5 @@
 pub(crate) mod build;
 mod collapse;
 pub(crate) mod layout;
+mod places;
 pub(crate) mod refit;
