@@ -88,14 +88,15 @@ impl Sequel<'_> {
         means: &mut [Mean],
     ) {
         let earlier = self.earlier.map(History::earlier);
+        let going_on = earlier.as_ref().map(|earlier| {
+            (earlier, Accumulation::new(settings, &view.camera, earlier.camera, self.scene_moved))
+        });
         let first = y * ambient.len();
         for (x, mean) in means.iter_mut().enumerate() {
             let pixel = first + x;
             let now = Mean { ambient: ambient[x], bent: bent[x], frames: 1.0 };
-            *mean = match &earlier {
-                Some(earlier) if pass1.guides[pixel].is_surface() => {
-                    let accumulation =
-                        Accumulation::new(settings, &view.camera, earlier.camera, self.scene_moved);
+            *mean = match &going_on {
+                Some((earlier, accumulation)) if pass1.guides[pixel].is_surface() => {
                     let path = Path { now: &pass1.guides[pixel], then: &pass1.then[pixel] };
                     accumulation.update(pixel, &path, earlier, &now)
                 }
