@@ -1,0 +1,166 @@
+//! Everything that the user decides, as plain data.
+
+use std::path::PathBuf;
+
+use ambray::{
+    Aov,
+    settings::{Settings, Size},
+};
+
+/// Which scene is open.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct SceneRef {
+    /// Path of a file, or the word of a built-in scene.
+    pub path: PathBuf,
+    /// Scene of a glTF file, by name or number.
+    pub gltf_scene: Option<String>,
+}
+
+impl SceneRef {
+    /// The scene that `path` names.
+    #[must_use]
+    pub fn new(path: impl Into<PathBuf>) -> Self {
+        Self { path: path.into(), gltf_scene: None }
+    }
+}
+
+/// One of the two pictures that are compared.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Side {
+    /// The picture; on the left of the divider.
+    #[default]
+    A,
+    /// What it is compared with; on the right.
+    B,
+}
+
+impl Side {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::A, Self::B];
+
+    /// The other one.
+    #[must_use]
+    pub const fn other(self) -> Self {
+        match self {
+            Self::A => Self::B,
+            Self::B => Self::A,
+        }
+    }
+}
+
+/// How two settings are compared.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Comparison {
+    /// Only side A is shown.
+    #[default]
+    Off,
+    /// A and B beside each other, with a divider to drag.
+    Split,
+    /// A − B.
+    Difference,
+}
+
+/// Size of the rendered picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Resolution {
+    /// That of the place in the window, times a factor above 0.
+    Window(f32),
+    /// A size of its own, scaled to the place in the window.
+    Fixed(Size),
+}
+
+/// How fast an animation plays, and whether it does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Playback {
+    /// Whether time goes on.
+    pub is_playing: bool,
+    /// Seconds of the animation in a second.
+    pub speed: f32,
+    /// Frames a second of a single step.
+    pub fps: f32,
+}
+
+impl Default for Playback {
+    fn default() -> Self {
+        Self { is_playing: false, speed: 1.0, fps: 24.0 }
+    }
+}
+
+/// Everything that the user decides.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// The scene that was asked for last.
+    pub scene: SceneRef,
+    /// Settings of side A and of side B, complete.
+    pub settings: [Settings; 2],
+    /// The side that the panel edits.
+    pub editing: Side,
+    /// How the sides are compared.
+    pub comparison: Comparison,
+    /// Place of the divider, share of the width from the left.
+    pub divider: f32,
+    /// The plane that is shown.
+    pub aov: Aov,
+    /// Size of the picture.
+    pub resolution: Resolution,
+    /// The animation.
+    pub playback: Playback,
+    /// Whether the camera or a slider is being dragged: quick pictures are worth more than fine ones.
+    pub is_moving: bool,
+}
+
+impl Model {
+    /// Shows `scene` with `settings`.
+    #[must_use]
+    pub fn new(scene: SceneRef, settings: Settings) -> Self {
+        Self {
+            scene,
+            settings: [settings.clone(), settings],
+            editing: Side::A,
+            comparison: Comparison::Off,
+            divider: 0.5,
+            aov: Aov::Beauty,
+            resolution: Resolution::Window(1.0),
+            playback: Playback::default(),
+            is_moving: false,
+        }
+    }
+
+    /// Settings of `side`.
+    #[must_use]
+    pub const fn of(&self, side: Side) -> &Settings {
+        &self.settings[side as usize]
+    }
+
+    /// Settings of `side`, to be changed. What the sides share must be changed on both: [`share`](Self::share).
+    pub const fn of_mut(&mut self, side: Side) -> &mut Settings {
+        &mut self.settings[side as usize]
+    }
+
+    /// Gives the other side what both share, from the side that is edited: camera, size, moment and display.
+    pub fn share(&mut self) {
+        let from = self.of(self.editing).clone();
+        let to = self.of_mut(self.editing.other());
+        *to = Settings {
+            size: from.size,
+            exposure: from.exposure,
+            tone_map: from.tone_map,
+            animation: from.animation,
+            time: from.time,
+            animation_loop: from.animation_loop,
+            camera: from.camera,
+            camera_position: from.camera_position,
+            camera_target: from.camera_target,
+            camera_up: from.camera_up,
+            vertical_fov: from.vertical_fov,
+            orthographic_height: from.orthographic_height,
+            ..to.clone()
+        };
+    }
+
+    /// The sides that are shown.
+    #[must_use]
+    pub fn sides(&self) -> &'static [Side] {
+        if self.comparison == Comparison::Off { &[Side::A] } else { &Side::ALL }
+    }
+}
