@@ -27,6 +27,7 @@ pub use ambray_core::{
     aov::{Aov, AovKind},
     camera,
     control::Control,
+    display,
     frame::{Frame, FrameStats, GBufferPixel, PoseStats, RayCounts, StageTimes},
     light,
     query::{QueryPoint, QueryResult},

@@ -9,7 +9,7 @@ use std::{any::TypeId, ffi::OsString, fmt::Display, path::PathBuf, str::FromStr}
 
 use ambray::{
     Aov,
-    settings::{Auto, Preset, Rgb, Settings, SettingsPatch, Size, Triple},
+    settings::{Auto, Preset, Range, Rgb, Settings, SettingsPatch, Size, Triple},
 };
 use clap::{
     Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum,
@@ -372,6 +372,8 @@ fn describe_setting(arg: clap::Arg, defaults: &toml::Table) -> clap::Arg {
         arg.value_parser(auto::<Rgb>)
     } else if value == TypeId::of::<Auto<Triple>>() {
         arg.value_parser(auto::<Triple>)
+    } else if value == TypeId::of::<Auto<Range>>() {
+        arg.value_parser(auto::<Range>)
     } else {
         arg
     }

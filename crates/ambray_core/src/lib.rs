@@ -13,7 +13,7 @@
 //!
 //! Start with [`gather`]: points and sample directions go in, O and I come out. It never learns who traces the rays:
 //! that is the trait [`trace::World`]. [`settings`] is what a person sets, [`view`] the same with every `auto`
-//! replaced, [`frame`] and [`query`] what comes out.
+//! replaced, [`frame`] and [`query`] what comes out, [`display`] how it is shown.
 //!
 //! `docs/method.md` of the project lists each equation with its function and its test.
 #![forbid(unsafe_code)]
@@ -24,6 +24,7 @@ pub mod camera;
 pub mod compose;
 pub mod control;
 pub mod direct;
+pub mod display;
 pub mod filter;
 pub mod frame;
 pub mod gather;

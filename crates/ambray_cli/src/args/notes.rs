@@ -30,12 +30,12 @@ Of a flag given twice, the last one counts.";
 pub(super) const RENDER_NOTES: &str = "\
 How PNG shows the planes of --aov (OpenEXR holds the plain values):
   colours        exposure, tone map and sRGB, as the picture; the albedo by sRGB alone
-  openness       grey, display value = value: 0 black, 1 white
-  depth          grey from black at the nearest surface to white at the farthest; white where nothing is seen
+  openness       grey, display value = value: 0 black, 1 white; other colours by --ramp, other ends by --range
+  depth          the same from the nearest surface to the farthest; white where nothing is seen
+  counts         the same from 0 to the largest count
   position       x, y, z as red, green, blue over the box of what is seen; black where nothing is seen
   normals        (n + 1)/2 as red, green, blue; black where nothing is seen
   indices        a colour of their own each; black where nothing is seen
-  counts         grey from 0 to the largest count
   motion         to the right and down as red and green about grey, relative to the largest movement
 
 A picture holds its settings: --settings picture.png makes it again, but for light accumulated over earlier frames.

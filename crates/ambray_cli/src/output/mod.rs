@@ -2,12 +2,10 @@
 
 pub mod atomic;
 pub mod exr;
-pub mod false_colour;
 pub mod folder;
 pub mod head;
 pub mod numbering;
 pub mod png;
-pub mod tone_map;
 pub mod video;
 pub mod whole;
 
@@ -16,7 +14,7 @@ use std::{
     time::SystemTime,
 };
 
-use ambray::{Aov, Frame, settings::Settings};
+use ambray::{Aov, Frame, display, settings::Settings};
 use anyhow::{anyhow, bail};
 
 use self::{
@@ -132,7 +130,7 @@ impl Plan {
         let texts =
             [("Software", SOFTWARE), (SCENE_KEYWORD, scene), (settings_file::PNG_KEYWORD, toml.as_str())];
         for (target, aov) in self.files() {
-            let picture = false_colour::show(frame, aov, settings);
+            let picture = display::show(frame, aov, settings);
             let size = (frame.width, frame.height);
             batch.add(&target, |out| png::write(out, size, &picture, bits, &texts))?;
             crate::signals::check()?;

@@ -2,10 +2,8 @@
 
 use std::io::Write;
 
-use glam::Vec3;
+use ambray::display::Picture;
 use png::{BitDepth, ColorType, Compression, Encoder, SrgbRenderingIntent};
-
-use super::false_colour::Picture;
 
 /// Bits of a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,36 +41,9 @@ pub fn write(
         encoder.add_itxt_chunk((*keyword).to_owned(), (*text).to_owned())?;
     }
     let mut writer = encoder.write_header()?;
-    writer.write_image_data(&samples(picture, bits))?;
+    writer.write_image_data(&match bits {
+        Bits::Eight => picture.eight_bit(),
+        Bits::Sixteen => picture.sixteen_bit(),
+    })?;
     Ok(writer.finish()?)
-}
-
-/// The values of `picture` as bytes, row by row from the top, most significant byte first.
-pub(super) fn samples(picture: &Picture, bits: Bits) -> Vec<u8> {
-    match picture {
-        Picture::Grey(values) => quantize(values.iter().copied(), bits),
-        Picture::Rgb { pixels, .. } => {
-            quantize(pixels.iter().flat_map(|pixel: &Vec3| pixel.to_array()), bits)
-        }
-    }
-}
-
-fn quantize(values: impl Iterator<Item = f32>, bits: Bits) -> Vec<u8> {
-    // The casts saturate, and NaN becomes 0.
-    match bits {
-        Bits::Eight => values.map(|v| (v * 255.0 + 0.5) as u8).collect(),
-        Bits::Sixteen => values.flat_map(|v| ((v * 65535.0 + 0.5) as u16).to_be_bytes()).collect(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn values_round_to_the_nearest() {
-        let values = [0.0, 1.0, 0.5, 0.499 / 255.0, 0.501 / 255.0, -3.0, 7.0, f32::NAN];
-        assert_eq!(quantize(values.into_iter(), Bits::Eight), [0, 255, 128, 0, 1, 0, 255, 0]);
-        assert_eq!(quantize([0.5, 1.0].into_iter(), Bits::Sixteen), [0x80, 0x00, 0xFF, 0xFF]);
-    }
 }

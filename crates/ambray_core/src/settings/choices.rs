@@ -145,4 +145,18 @@ choices! {
         #[default]
         Neutral,
     }
+    /// Colours of planes of one number a pixel in PNG pictures; OpenEXR keeps the numbers.
+    Ramp {
+        /// black to white
+        #[default]
+        Grey,
+        /// dark violet to yellow, even to the eye
+        Viridis,
+        /// black over purple to a light yellow, even to the eye
+        Magma,
+        /// blue over green to red: tells most values apart
+        Turbo,
+        /// dark blue to yellow, the same to those who see red and green alike
+        Cividis,
+    }
 }

@@ -10,10 +10,10 @@ mod validate;
 mod values;
 
 pub use choices::{
-    Falloff, FilterTest, NearRadiance, Normals, RadianceSource, Sampling, Sequence, Temporal, Thin,
+    Falloff, FilterTest, NearRadiance, Normals, RadianceSource, Ramp, Sampling, Sequence, Temporal, Thin,
     ThinMinimum, ToneMap, Window,
 };
 pub use preset::Preset;
 pub use table::{Settings, SettingsPatch};
 pub use validate::SettingsError;
-pub use values::{Auto, Rgb, Size, Triple, ValueError};
+pub use values::{Auto, Range, Rgb, Size, Triple, ValueError};

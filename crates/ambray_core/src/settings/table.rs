@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Auto, Falloff, FilterTest, NearRadiance, Normals, RadianceSource, Rgb, Sampling, Sequence, Size,
-    Temporal, Thin, ThinMinimum, ToneMap, Triple, Window,
+    Auto, Falloff, FilterTest, NearRadiance, Normals, RadianceSource, Ramp, Range, Rgb, Sampling, Sequence,
+    Size, Temporal, Thin, ThinMinimum, ToneMap, Triple, Window,
 };
 
 macro_rules! settings {
@@ -67,6 +67,12 @@ settings! {
     /// Mapping of radiance to the display, PNG only
     #[arg(value_enum, value_name = "KIND")]
     tone_map: ToneMap = ToneMap::Neutral;
+    /// Colours of openness, depth and counts, PNG only
+    #[arg(value_enum, value_name = "COLOURS")]
+    ramp: Ramp = Ramp::Grey;
+    /// Values at the ends of the ramp, PNG only, or auto (openness from 0 to 1, depth over what is seen, counts from 0)
+    #[arg(value_name = "LOW,HIGH", allow_hyphen_values = true)]
+    range: Auto<Range> = Auto::Auto;
 
     ["Ambient light"]
     /// Ambient rays per pixel, 1 to 65536: more is smoother; beyond 8 the eye sees little

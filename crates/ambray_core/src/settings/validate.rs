@@ -57,6 +57,11 @@ impl Settings {
             self.exposure.to_string(),
             "-64 to 64 stops",
         );
+        let ordered = self.range.value().is_none_or(|range| {
+            let [low, high] = range.0;
+            low.is_finite() && high.is_finite() && low < high
+        });
+        check(ordered, "range", self.range.to_string(), "auto or two finite numbers, the smaller first");
 
         let time = self.time.unwrap_or(0.0);
         check((0.0..=MAX_TIME).contains(&time), "time", self.time.to_string(), "auto or 0 to 10000 seconds");
@@ -116,7 +121,7 @@ impl Settings {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Preset, Rgb, Size, Triple};
+    use super::super::{Preset, Range, Rgb, Size, Triple};
     use super::*;
 
     #[test]
@@ -133,6 +138,7 @@ mod tests {
     fn each_problem_is_named() {
         let settings = Settings {
             size: Size { width: 0, height: 9 },
+            range: Auto::Value(Range([1.0, 1.0])),
             spp: 0,
             radius: Auto::Value(f32::NAN),
             exponent: -1.0,
@@ -143,10 +149,19 @@ mod tests {
             ..Settings::default()
         };
         let names: Vec<_> = settings.validate().iter().map(|e| e.name).collect();
-        let expected =
-            ["size", "spp", "radius", "exponent", "ambient", "camera-up", "camera-position", "vertical-fov"];
+        let expected = [
+            "size",
+            "range",
+            "spp",
+            "radius",
+            "exponent",
+            "ambient",
+            "camera-up",
+            "camera-position",
+            "vertical-fov",
+        ];
         assert_eq!(names, expected);
-        assert_eq!(settings.validate()[1].to_string(), "spp 0 is not allowed: 1 to 65536");
+        assert_eq!(settings.validate()[2].to_string(), "spp 0 is not allowed: 1 to 65536");
     }
 
     #[test]
@@ -155,6 +170,7 @@ mod tests {
             radius: Auto::Value(1.5),
             ambient: Auto::Value(Rgb([0.25, 0.5, 1.0])),
             camera: Auto::Value("nave".to_owned()),
+            range: Auto::Value(Range([-0.5, 2.0])),
             thin: Thin::Sheet,
             thin_edge: true,
             ..Settings::default()

@@ -135,6 +135,11 @@ pub struct Rgb(pub [f32; 3]);
 #[serde(transparent)]
 pub struct Triple(pub [f32; 3]);
 
+/// The two ends of a range of values, written `0,2.5` on the command line and `[0, 2.5]` in files.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Range(pub [f32; 2]);
+
 fn numbers(text: &str) -> Option<Vec<f32>> {
     text.split(',').map(|part| part.trim().parse().ok()).collect()
 }
@@ -159,6 +164,23 @@ impl FromStr for Triple {
             Some(&[x, y, z]) => Ok(Self([x, y, z])),
             _ => Err(expected("X,Y,Z, such as 0,1.6,-3")),
         }
+    }
+}
+
+impl FromStr for Range {
+    type Err = ValueError;
+
+    fn from_str(text: &str) -> Result<Self, ValueError> {
+        match numbers(text).as_deref() {
+            Some(&[low, high]) => Ok(Self([low, high])),
+            _ => Err(expected("LOW,HIGH, such as 0,2.5")),
+        }
+    }
+}
+
+impl fmt::Display for Range {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{},{}", self.0[0], self.0[1])
     }
 }
 
@@ -199,6 +221,9 @@ mod tests {
         for size in ["640", "640x", "x", "-1x4", "640x360x1", "4294967296x1"] {
             assert!(size.parse::<Size>().is_err(), "{size}");
         }
+        assert_eq!("-1,2.5".parse(), Ok(Range([-1.0, 2.5])));
+        assert_eq!(Range([-1.0, 2.5]).to_string(), "-1,2.5");
+        assert!("1".parse::<Range>().is_err() && "1,2,3".parse::<Range>().is_err());
         assert!("1,2".parse::<Triple>().is_err());
         assert!("red".parse::<Rgb>().is_err());
     }

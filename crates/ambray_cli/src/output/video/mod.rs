@@ -5,14 +5,10 @@ mod gif;
 
 use std::path::Path;
 
-use ambray::{Aov, Frame, settings::Settings, settings::Size};
+use ambray::{Aov, Frame, display, settings::Settings, settings::Size};
 use anyhow::{anyhow, bail};
 
-use super::{
-    atomic::Pending,
-    false_colour,
-    png::{self, Bits},
-};
+use super::atomic::Pending;
 use crate::{args::Rate, failure::with_hint};
 
 /// Kind of a video file, by its extension.
@@ -86,7 +82,7 @@ pub trait Encode {
 
 /// The picture of `frame` as 8-bit RGB, as PNG would have it.
 pub fn pixels(frame: &Frame, settings: &Settings) -> anyhow::Result<Vec<u8>> {
-    let rgb = png::samples(&false_colour::show(frame, Aov::Beauty, settings), Bits::Eight);
+    let rgb = display::show(frame, Aov::Beauty, settings).eight_bit();
     if rgb.len() != 3 * frame.beauty.len() {
         bail!("the picture has no colours");
     }

@@ -1,34 +1,13 @@
-//! How PNG shows the planes of a frame.
-//!
-//! | kind | shown as |
-//! |---|---|
-//! | colours | exposure, tone map, sRGB, as the picture; the albedo by sRGB alone |
-//! | openness | grey, display value = value |
-//! | depth | grey, linear from black at the nearest surface to white at the farthest; white where nothing is seen |
-//! | position | x, y, z as red, green, blue over the box of what is seen; black where nothing is seen |
-//! | normals | (n + 1)/2 as red, green, blue; black where there is none |
-//! | indices | a colour of their own each; black where nothing is seen |
-//! | counts | grey, linear from 0 to the largest |
-//! | motion | to the right and down as red and green about grey, relative to the largest movement |
+//! Which colours the values of a plane get.
 
-use ambray::{Aov, AovKind, Frame, settings::Settings};
 use glam::Vec3;
 
-use super::tone_map;
-
-/// Display values in `[0, 1]`, pixels row by row from the top.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Picture {
-    /// One value a pixel.
-    Grey(Vec<f32>),
-    /// Red, green and blue; whether they stand for colours in sRGB rather than for plain numbers.
-    Rgb {
-        /// Values of the pixels.
-        pixels: Vec<Vec3>,
-        /// Whether they are colours.
-        is_color: bool,
-    },
-}
+use super::{Picture, scalar, tone_map};
+use crate::{
+    aov::{Aov, AovKind},
+    frame::Frame,
+    settings::Settings,
+};
 
 /// The plane `aov` of `frame` as a picture.
 #[must_use]
@@ -40,12 +19,10 @@ pub fn show(frame: &Frame, aov: Aov, settings: &Settings) -> Picture {
         AovKind::Color => {
             color(vectors(&values).map(|v| tone_map::display(v, settings.exposure, settings.tone_map)))
         }
-        AovKind::Unit => Picture::Grey(values),
-        AovKind::Depth => Picture::Grey(depth(&values)),
+        kind @ (AovKind::Unit | AovKind::Depth | AovKind::Count) => scalar::show(kind, &values, settings),
         AovKind::Position => plain(position(&values, seen)),
         AovKind::Normal => plain(vectors(&values).map(normal).collect()),
         AovKind::Id => plain(values.iter().map(|&id| palette(id)).collect()),
-        AovKind::Count => Picture::Grey(counts(&values)),
         AovKind::Motion => plain(motion(&values)),
     }
 }
@@ -60,14 +37,6 @@ fn color(pixels: impl Iterator<Item = Vec3>) -> Picture {
 
 fn plain(pixels: Vec<Vec3>) -> Picture {
     Picture::Rgb { pixels, is_color: false }
-}
-
-fn depth(values: &[f32]) -> Vec<f32> {
-    let finite = || values.iter().copied().filter(|z| z.is_finite());
-    let near = finite().fold(f32::INFINITY, f32::min);
-    let range = finite().fold(f32::NEG_INFINITY, f32::max) - near;
-    let scaled = |z: f32| if range > 0.0 { (z - near) / range } else { 0.0 };
-    values.iter().map(|&z| if z.is_finite() { scaled(z) } else { 1.0 }).collect()
 }
 
 fn position(values: &[f32], seen: impl Fn(usize) -> bool) -> Vec<Vec3> {
@@ -106,21 +75,9 @@ fn motion(values: &[f32]) -> Vec<Vec3> {
     pixels.collect()
 }
 
-fn counts(values: &[f32]) -> Vec<f32> {
-    let most = values.iter().copied().fold(1.0, f32::max);
-    values.iter().map(|count| count / most).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn depth_runs_from_the_nearest_to_the_farthest() {
-        assert_eq!(depth(&[2.0, 4.0, 3.0, f32::INFINITY]), [0.0, 1.0, 0.5, 1.0]);
-        assert_eq!(depth(&[2.0, f32::INFINITY]), [0.0, 1.0]);
-        assert_eq!(depth(&[f32::INFINITY]), [1.0]);
-    }
 
     #[test]
     fn positions_fill_the_box_of_what_is_seen() {
@@ -140,9 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn counts_are_relative_and_nothing_is_black() {
-        assert_eq!(counts(&[0.0, 4.0, 1.0]), [0.0, 1.0, 0.25]);
-        assert_eq!(counts(&[0.0]), [0.0]);
+    fn directions_are_about_grey_and_nothing_is_black() {
         assert_eq!(motion(&[0.0, 0.0]), [Vec3::splat(0.5)]);
         let moved = motion(&[2.0, -4.0, 0.0, 4.0]);
         assert_eq!(moved, [Vec3::new(0.75, 0.0, 0.5), Vec3::new(0.5, 1.0, 0.5)]);

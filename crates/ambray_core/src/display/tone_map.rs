@@ -1,7 +1,8 @@
 //! From linear radiance to display values.
 
-use ambray::settings::ToneMap;
 use glam::Vec3;
+
+use crate::settings::ToneMap;
 
 /// Radiance beyond this is cut, so that infinities stay out of the formulas.
 const BRIGHTEST: f32 = 1e30;
