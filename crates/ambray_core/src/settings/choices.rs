@@ -1,19 +1,71 @@
 //! Settings that choose among named alternatives.
 
+use std::{fmt, str::FromStr};
+
 use serde::{Deserialize, Serialize};
+
+use super::{
+    ValueError,
+    field::{Kind, Value},
+    spelling::kebab,
+    values::expected,
+};
 
 /// Declares enums whose variants are spelled in kebab case in files and flags alike.
 macro_rules! choices {
-    ($($(#[doc = $doc:literal])* $name:ident { $($(#[$meta:meta])* $variant:ident,)* })*) => { $(
+    ($(
+        $(#[doc = $doc:literal])*
+        $name:ident {
+            $( $(#[doc = $help:literal])+ $(#[default $($default:tt)?])? $variant:ident, )*
+        }
+    )*) => { $(
         $(#[doc = $doc])*
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
         #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
         #[serde(rename_all = "kebab-case")]
-        pub enum $name { $($(#[$meta])* $variant,)* }
+        pub enum $name { $( $(#[doc = $help])+ $(#[default $($default)?])? $variant, )* }
 
         impl $name {
             /// All alternatives, in the order of the documentation.
             pub const ALL: &[Self] = &[$(Self::$variant),*];
+
+            /// Its name in files and on the command line.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$variant => kebab!($variant),)* }
+            }
+
+            /// What it means.
+            #[must_use]
+            pub const fn meaning(self) -> &'static str {
+                match self { $(Self::$variant => concat!($($help),+).trim_ascii(),)* }
+            }
+        }
+
+        impl fmt::Display for $name {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(self.name())
+            }
+        }
+
+        impl FromStr for $name {
+            type Err = ValueError;
+
+            fn from_str(name: &str) -> Result<Self, ValueError> {
+                Self::ALL.iter().copied().find(|choice| choice.name() == name).ok_or_else(|| {
+                    expected(&format!("one of {}", [$(kebab!($variant)),*].join(", ")))
+                })
+            }
+        }
+
+        impl Value for $name {
+            const KIND: Kind = Kind::Choice(&[
+                $((kebab!($variant), concat!($($help),+).trim_ascii()),)*
+            ]);
+
+            fn read(text: &str) -> Result<Self, ValueError> {
+                text.parse()
+            }
         }
     )* };
 }
@@ -158,5 +210,15 @@ choices! {
         Turbo,
         /// dark blue to yellow, the same to those who see red and green alike
         Cividis,
+    }
+    /// A starting point; a settings file and flags have the last word.
+    Preset {
+        /// 4 interleaved rays per pixel, filtered: for a first look
+        Draft,
+        /// 8 interleaved rays per pixel, filtered: the method as published
+        #[default]
+        Realtime,
+        /// 1024 rays per pixel with an independent scramble in every pixel, unfiltered: the truth to compare with
+        Reference,
     }
 }

@@ -1,19 +1,23 @@
 //! What a person sets: plain data with meaning, unit, range and default beside each field.
 //!
 //! [`Settings`] is complete; a [`SettingsPatch`] holds some of the fields and comes from a preset, a file or the
-//! command line. Both are declared once, by the `settings!` table in `table.rs`, which also makes the flags.
+//! command line. Both are declared once, by the `settings!` table in `table.rs`, which also makes the flags and the
+//! [descriptions](Settings::fields) of all fields.
 
 mod choices;
+mod domains;
+mod field;
 mod preset;
+mod spelling;
 mod table;
 mod validate;
 mod values;
 
 pub use choices::{
-    Falloff, FilterTest, NearRadiance, Normals, RadianceSource, Ramp, Sampling, Sequence, Temporal, Thin,
-    ThinMinimum, ToneMap, Window,
+    Falloff, FilterTest, NearRadiance, Normals, Preset, RadianceSource, Ramp, Sampling, Sequence, Temporal,
+    Thin, ThinMinimum, ToneMap, Window,
 };
-pub use preset::Preset;
+pub use field::{Field, Kind, SetError};
 pub use table::{Settings, SettingsPatch};
 pub use validate::SettingsError;
 pub use values::{Auto, Range, Rgb, Size, Triple, ValueError};

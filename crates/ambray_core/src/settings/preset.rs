@@ -1,22 +1,6 @@
 //! Named settings for usual needs.
 
-use serde::{Deserialize, Serialize};
-
-use super::{Sampling, SettingsPatch, Window};
-
-/// A starting point; a settings file and flags have the last word.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
-#[serde(rename_all = "kebab-case")]
-pub enum Preset {
-    /// 4 interleaved rays per pixel, filtered: for a first look
-    Draft,
-    /// 8 interleaved rays per pixel, filtered: the method as published
-    #[default]
-    Realtime,
-    /// 1024 rays per pixel with an independent scramble in every pixel, unfiltered: the truth to compare with
-    Reference,
-}
+use super::{Preset, Sampling, SettingsPatch, Window};
 
 impl Preset {
     /// The fields that the preset decides.

@@ -1,16 +1,22 @@
-//! The one list of settings, from which the struct, the patch, the file format and the flags are made.
+//! The one list of settings, from which the struct, the patch, the descriptions, the file format and the flags are made.
 
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Auto, Falloff, FilterTest, NearRadiance, Normals, RadianceSource, Ramp, Range, Rgb, Sampling, Sequence,
-    Size, Temporal, Thin, ThinMinimum, ToneMap, Triple, Window,
+    Auto, Falloff, Field, FilterTest, NearRadiance, Normals, RadianceSource, Ramp, Range, Rgb, Sampling,
+    Sequence, SetError, SettingsError, Size, Temporal, Thin, ThinMinimum, ToneMap, Triple, Window, domains,
+    field::{Domain, Value},
+    spelling::kebab,
 };
 
 macro_rules! settings {
     ($(
         [$heading:literal]
-        $( $(#[doc = $doc:literal])+ $(#[arg($($arg:tt)*)])? $name:ident: $type:ty = $default:expr; )+
+        $(
+            $(#[doc = $doc:literal])+
+            $(#[arg($($arg:tt)*)])?
+            $name:ident: $type:ty = $default:expr, $value_name:literal $(in $domain:ident)?;
+        )+
     )+) => {
         /// Everything that decides a picture, apart from the scene. The same settings give the same picture.
         #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -25,6 +31,63 @@ macro_rules! settings {
             }
         }
 
+        impl Settings {
+            /// Descriptions of all settings, in the order of the documentation.
+            #[must_use]
+            pub const fn fields() -> &'static [Field] {
+                const FIELDS: &[Field] = &[$($(
+                    Field {
+                        name: kebab!($name),
+                        heading: $heading,
+                        doc: concat!($($doc),+).trim_ascii(),
+                        value_name: $value_name,
+                        kind: <$type as Value>::KIND,
+                        allowed: { const DOMAIN: Domain<$type> = domain!($($domain)?); DOMAIN.allowed },
+                    },
+                )+)+];
+                FIELDS
+            }
+
+            /// The value of the setting called `name`, spelled as on the command line; `None` if there is no such setting.
+            #[must_use]
+            pub fn get(&self, name: &str) -> Option<String> {
+                $($( if name == kebab!($name) { return Some(self.$name.to_string()); } )+)+
+                None
+            }
+
+            /// Sets the setting called `name` from `text`, spelled as on the command line. Whether the value is allowed is
+            /// for [`validate`](Self::validate) to say.
+            ///
+            /// # Errors
+            ///
+            /// If there is no such setting, or if the text is not a value of its kind.
+            pub fn set(&mut self, name: &str, text: &str) -> Result<(), SetError> {
+                $($(
+                    if name == kebab!($name) {
+                        let refused = |error| {
+                            SetError::Value { name: kebab!($name), value: text.to_owned(), error }
+                        };
+                        self.$name = <$type as Value>::read(text).map_err(refused)?;
+                        return Ok(());
+                    }
+                )+)+
+                Err(SetError::Unknown(name.to_owned()))
+            }
+
+            /// The settings outside their domains, each by itself.
+            pub(super) fn outside(&self) -> Vec<SettingsError> {
+                let mut errors = Vec::new();
+                $($(
+                    let domain: Domain<$type> = domain!($($domain)?);
+                    if !(domain.contains)(&self.$name) {
+                        let value = self.$name.to_string();
+                        errors.push(SettingsError { name: kebab!($name), value, allowed: domain.allowed });
+                    }
+                )+)+
+                errors
+            }
+        }
+
         /// Some of the [`Settings`]: a preset, a settings file, or the flags of a command.
         #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
         #[cfg_attr(feature = "clap", derive(clap::Args))]
@@ -32,7 +95,10 @@ macro_rules! settings {
         pub struct SettingsPatch {
             $($(
                 $(#[doc = $doc])+
-                #[cfg_attr(feature = "clap", arg(long, help_heading = $heading $(, $($arg)*)?))]
+                #[cfg_attr(
+                    feature = "clap",
+                    arg(long, help_heading = $heading, value_name = $value_name $(, $($arg)*)?)
+                )]
                 #[serde(skip_serializing_if = "Option::is_none")]
                 pub $name: Option<$type>,
             )+)+
@@ -53,151 +119,141 @@ macro_rules! settings {
     };
 }
 
+/// The domain of a setting, where one is named.
+macro_rules! domain {
+    () => {
+        Domain::ALL
+    };
+    ($domain:ident) => {
+        domains::$domain
+    };
+}
+
 settings! {
     ["Picture"]
     /// Width and height of the picture, pixels
-    #[arg(value_name = "WIDTHxHEIGHT")]
-    size: Size = Size { width: 1280, height: 720 };
+    size: Size = Size { width: 1280, height: 720 }, "WIDTHxHEIGHT" in SIZE;
     /// Normals that direct rays and light
-    #[arg(value_enum, value_name = "KIND")]
-    normals: Normals = Normals::Shading;
+    #[arg(value_enum)]
+    normals: Normals = Normals::Shading, "KIND";
     /// Brightness of the picture in stops, PNG only: +1 doubles it
-    #[arg(value_name = "STOPS", allow_negative_numbers = true)]
-    exposure: f32 = 0.0;
+    #[arg(allow_negative_numbers = true)]
+    exposure: f32 = 0.0, "STOPS" in STOPS;
     /// Mapping of radiance to the display, PNG only
-    #[arg(value_enum, value_name = "KIND")]
-    tone_map: ToneMap = ToneMap::Neutral;
+    #[arg(value_enum)]
+    tone_map: ToneMap = ToneMap::Neutral, "KIND";
     /// Colours of openness, depth and counts, PNG only
-    #[arg(value_enum, value_name = "COLOURS")]
-    ramp: Ramp = Ramp::Grey;
+    #[arg(value_enum)]
+    ramp: Ramp = Ramp::Grey, "COLOURS";
     /// Values at the ends of the ramp, PNG only, or auto (openness from 0 to 1, depth over what is seen, counts from 0)
-    #[arg(value_name = "LOW,HIGH", allow_hyphen_values = true)]
-    range: Auto<Range> = Auto::Auto;
+    #[arg(allow_hyphen_values = true)]
+    range: Auto<Range> = Auto::Auto, "LOW,HIGH" in RAMP_ENDS;
 
     ["Ambient light"]
     /// Ambient rays per pixel, 1 to 65536: more is smoother; beyond 8 the eye sees little
-    #[arg(value_name = "N")]
-    spp: u32 = 8;
+    spp: u32 = 8, "N" in RAYS;
     /// Near-field radius in scene units, or auto (a tenth of the scene's smaller extents): farther blockers do not count
-    #[arg(value_name = "LENGTH")]
-    radius: Auto<f32> = Auto::Auto;
+    radius: Auto<f32> = Auto::Auto, "LENGTH" in AUTO_LENGTH;
     /// Kind of the fuzzy measure μ(d) of the distance to the first hit
-    #[arg(value_enum, value_name = "KIND")]
-    falloff: Falloff = Falloff::Power;
+    #[arg(value_enum)]
+    falloff: Falloff = Falloff::Power, "KIND";
     /// Exponent of the power falloff, above 0: larger darkens more
-    #[arg(value_name = "NUMBER")]
-    exponent: f32 = 1.0;
+    exponent: f32 = 1.0, "NUMBER" in LENGTH;
     /// Rate of the exponential falloffs per scene unit, or auto (3/radius)
-    #[arg(value_name = "RATE")]
-    sigma: Auto<f32> = Auto::Auto;
+    sigma: Auto<f32> = Auto::Auto, "RATE" in AUTO_LENGTH;
     /// Ambient radiance of the far environment, linear RGB, or auto (the scene's, else white)
-    #[arg(value_name = "R,G,B")]
-    ambient: Auto<Rgb> = Auto::Auto;
+    ambient: Auto<Rgb> = Auto::Auto, "R,G,B" in AUTO_COLOR;
     /// Colour where no surface is seen, linear RGB, or auto (the ambient radiance if one is set, else grey)
-    #[arg(value_name = "R,G,B")]
-    background: Auto<Rgb> = Auto::Auto;
+    background: Auto<Rgb> = Auto::Auto, "R,G,B" in AUTO_COLOR;
 
     ["Colour bleeding"]
     /// How near-field radiance is estimated from the hits
-    #[arg(value_enum, value_name = "MODE")]
-    near_radiance: NearRadiance = NearRadiance::Averaged;
+    #[arg(value_enum)]
+    near_radiance: NearRadiance = NearRadiance::Averaged, "MODE";
     /// Distance in scene units below which hits enter the averages, or auto (all hits; the radius for averaged-plain)
-    #[arg(value_name = "LENGTH")]
-    near_limit: Auto<f32> = Auto::Auto;
+    near_limit: Auto<f32> = Auto::Auto, "LENGTH" in AUTO_LENGTH;
     /// Radiance that leaves a hit
-    #[arg(value_enum, value_name = "SOURCE")]
-    radiance_source: RadianceSource = RadianceSource::Ambient;
+    #[arg(value_enum)]
+    radiance_source: RadianceSource = RadianceSource::Ambient, "SOURCE";
 
     ["Thin objects"]
     /// Second batch of rays that finds thin objects
-    #[arg(value_enum, value_name = "MODE")]
-    thin: Thin = Thin::Off;
+    #[arg(value_enum)]
+    thin: Thin = Thin::Off, "MODE";
     /// With `--thin sheet`, count only surfaces seen edge-on
-    #[arg(value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
-    thin_edge: bool = false;
+    #[arg(num_args = 0..=1, require_equals = true, default_missing_value = "true")]
+    thin_edge: bool = false, "BOOL";
     /// Where the smaller of the two batches is taken
-    #[arg(value_enum, value_name = "PLACE")]
-    thin_minimum: ThinMinimum = ThinMinimum::BeforeFilter;
+    #[arg(value_enum)]
+    thin_minimum: ThinMinimum = ThinMinimum::BeforeFilter, "PLACE";
 
     ["Sampling"]
     /// Which set of directions a pixel uses
-    #[arg(value_enum, value_name = "MODE")]
-    sampling: Sampling = Sampling::Interleaved;
+    #[arg(value_enum)]
+    sampling: Sampling = Sampling::Interleaved, "MODE";
     /// Generator of the sets
-    #[arg(value_enum, value_name = "KIND")]
-    sequence: Sequence = Sequence::Auto;
+    #[arg(value_enum)]
+    sequence: Sequence = Sequence::Auto, "KIND";
     /// Frame number: each frame continues the sample sequence
-    #[arg(value_name = "N")]
-    frame: u32 = 0;
+    frame: u32 = 0, "N";
     /// Scramble of the sample sets: another seed gives another picture of the same quality
-    #[arg(value_name = "N")]
-    seed: u32 = 0;
+    seed: u32 = 0, "N";
 
     ["Filter"]
     /// Window of the geometry-aware filter
-    #[arg(long = "filter", value_enum, value_name = "WINDOW")]
-    filter: Window = Window::Centred;
+    #[arg(long = "filter", value_enum)]
+    filter: Window = Window::Centred, "WINDOW";
     /// Depth test that a neighbour must pass
-    #[arg(value_enum, value_name = "TEST")]
-    filter_test: FilterTest = FilterTest::Plane;
+    #[arg(value_enum)]
+    filter_test: FilterTest = FilterTest::Plane, "TEST";
     /// Plane test: largest distance from the tangent plane, pixel footprints
-    #[arg(value_name = "FOOTPRINTS")]
-    filter_plane: f32 = 1.0;
+    filter_plane: f32 = 1.0, "FOOTPRINTS" in LENGTH;
     /// Absolute test: largest difference of depth, scene units
-    #[arg(value_name = "LENGTH")]
-    filter_absolute: f32 = 0.05;
+    filter_absolute: f32 = 0.05, "LENGTH" in LENGTH;
     /// Relative test: largest difference of depth, share of the depth
-    #[arg(value_name = "SHARE")]
-    filter_relative: f32 = 0.01;
+    filter_relative: f32 = 0.01, "SHARE" in LENGTH;
     /// Smallest cosine between the normals of neighbours, -1 to 1; -1 accepts all
-    #[arg(value_name = "COSINE", allow_negative_numbers = true)]
-    filter_cos_normal: f32 = 0.95;
+    #[arg(allow_negative_numbers = true)]
+    filter_cos_normal: f32 = 0.95, "COSINE" in COSINE;
 
     ["Animation"]
     /// Animation of the file, by name or number from 0, or the word all for all at once; auto is the first
-    #[arg(value_name = "NAME")]
-    animation: Auto<String> = Auto::Auto;
+    animation: Auto<String> = Auto::Auto, "NAME";
     /// Time in the animation, seconds; auto is its start if an animation is named, else the scene at rest
-    #[arg(value_name = "SECONDS")]
-    time: Auto<f32> = Auto::Auto;
+    time: Auto<f32> = Auto::Auto, "SECONDS" in TIME;
     /// Start over after the end of the animation; otherwise its last pose holds
-    #[arg(value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
-    animation_loop: bool = true;
+    #[arg(num_args = 0..=1, require_equals = true, default_missing_value = "true")]
+    animation_loop: bool = true, "BOOL";
     /// Accumulation over the frames of a sequence: each continues the sample sequence, and keeps what is still true
-    #[arg(value_enum, value_name = "MODE")]
-    temporal: Temporal = Temporal::Off;
+    #[arg(value_enum)]
+    temporal: Temporal = Temporal::Off, "MODE";
 
     ["Direct light"]
     /// Use the lights of the scene
-    #[arg(value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
-    lights: bool = true;
+    #[arg(num_args = 0..=1, require_equals = true, default_missing_value = "true")]
+    lights: bool = true, "BOOL";
     /// Direction from the scene towards an additional sun; auto is no sun, or 0.4,1,0.3 if a strength is set
-    #[arg(value_name = "X,Y,Z", allow_hyphen_values = true)]
-    sun_direction: Auto<Triple> = Auto::Auto;
+    #[arg(allow_hyphen_values = true)]
+    sun_direction: Auto<Triple> = Auto::Auto, "X,Y,Z" in DIRECTION;
     /// Colour of the additional sun, linear RGB
-    #[arg(value_name = "R,G,B")]
-    sun_color: Rgb = Rgb([1.0; 3]);
+    sun_color: Rgb = Rgb([1.0; 3]), "R,G,B" in COLOR;
     /// Irradiance of a surface that faces the additional sun; auto is 3 if a direction is set, else 0
-    #[arg(value_name = "NUMBER")]
-    sun_strength: Auto<f32> = Auto::Auto;
+    sun_strength: Auto<f32> = Auto::Auto, "NUMBER" in STRENGTH;
 
     ["Camera"]
     /// Camera of the file, by name or number from 0; auto takes the first, or frames the scene
-    #[arg(value_name = "NAME")]
-    camera: Auto<String> = Auto::Auto;
+    camera: Auto<String> = Auto::Auto, "NAME";
     /// Position of the camera, world space
-    #[arg(value_name = "X,Y,Z", allow_hyphen_values = true)]
-    camera_position: Auto<Triple> = Auto::Auto;
+    #[arg(allow_hyphen_values = true)]
+    camera_position: Auto<Triple> = Auto::Auto, "X,Y,Z" in POINT;
     /// Point that the camera looks at, world space
-    #[arg(value_name = "X,Y,Z", allow_hyphen_values = true)]
-    camera_target: Auto<Triple> = Auto::Auto;
+    #[arg(allow_hyphen_values = true)]
+    camera_target: Auto<Triple> = Auto::Auto, "X,Y,Z" in POINT;
     /// Direction that is upright in the picture
-    #[arg(value_name = "X,Y,Z", allow_hyphen_values = true)]
-    camera_up: Auto<Triple> = Auto::Auto;
+    #[arg(allow_hyphen_values = true)]
+    camera_up: Auto<Triple> = Auto::Auto, "X,Y,Z" in DIRECTION;
     /// Full vertical angle of view, degrees above 0 and below 180; auto keeps the camera's, else 50
-    #[arg(value_name = "DEGREES")]
-    vertical_fov: Auto<f32> = Auto::Auto;
+    vertical_fov: Auto<f32> = Auto::Auto, "DEGREES" in DEGREES;
     /// Height of an orthographic view, scene units; auto is perspective unless the camera says otherwise
-    #[arg(value_name = "LENGTH")]
-    orthographic_height: Auto<f32> = Auto::Auto;
+    orthographic_height: Auto<f32> = Auto::Auto, "LENGTH" in AUTO_LENGTH;
 }

@@ -12,7 +12,15 @@ pub struct ValueError {
     expected: String,
 }
 
-fn expected(what: &str) -> ValueError {
+impl ValueError {
+    /// What was expected.
+    #[must_use]
+    pub fn expected(&self) -> &str {
+        &self.expected
+    }
+}
+
+pub(super) fn expected(what: &str) -> ValueError {
     ValueError { expected: what.to_owned() }
 }
 
