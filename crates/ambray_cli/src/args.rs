@@ -19,8 +19,9 @@ use clap::{
 pub use animate::{AnimateArgs, Updates, UpdatesArgs};
 use notes::{EXAMPLES, POINTS_HELP, PRECEDENCE, RENDER_NOTES};
 
+pub use ambray_files::{Format, Rate};
 pub use backend::{Backend, BackendArgs, DeviceArgs, Grouping, GroupingArgs, Trace};
-pub use sequence::{Frames, Rate, SequenceArgs};
+pub use sequence::{Frames, SequenceArgs};
 
 /// Ambient lighting by ray tracing: openness, colour bleeding and pictures.
 ///
@@ -250,38 +251,6 @@ pub struct CompletionsArgs {
     pub shell: clap_complete::Shell,
 }
 
-/// Format of a picture file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Format {
-    /// PNG with 8 bits a channel, tone-mapped
-    Png8,
-    /// PNG with 16 bits a channel, tone-mapped
-    Png16,
-    /// OpenEXR with 32-bit floats, linear
-    Exr,
-}
-
-impl Format {
-    /// Its name on the command line.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Png8 => "png8",
-            Self::Png16 => "png16",
-            Self::Exr => "exr",
-        }
-    }
-
-    /// Extension of its files.
-    #[must_use]
-    pub const fn extension(self) -> &'static str {
-        match self {
-            Self::Png8 | Self::Png16 => "png",
-            Self::Exr => "exr",
-        }
-    }
-}
-
 /// Format of a list of points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum PointsFormat {
@@ -305,6 +274,18 @@ impl FromStr for Planes {
 
     fn from_str(name: &str) -> Result<Self, String> {
         if name == "all" { Ok(Self::All) } else { name.parse().map(Self::One) }
+    }
+}
+
+impl Planes {
+    /// The planes of a list.
+    #[must_use]
+    pub fn of(list: &[Self]) -> Vec<Aov> {
+        let planes = list.iter().flat_map(|planes| match planes {
+            Self::All => Aov::ALL,
+            Self::One(aov) => std::slice::from_ref(aov),
+        });
+        planes.copied().collect()
     }
 }
 
@@ -333,11 +314,10 @@ fn whole<T: FromStr + PartialOrd + Display>(text: &str, least: T, most: T) -> Re
 /// The command line as clap knows it, with the default of each setting in its help.
 #[must_use]
 pub fn command() -> clap::Command {
-    let defaults = toml::Table::try_from(Settings::default()).expect("settings are plain data");
     let with_settings = ["render", "query", "bench"];
     let command = Cli::command().args_override_self(true);
     with_settings.into_iter().fold(command, |command, name| {
-        command.mut_subcommand(name, |sub| sub.mut_args(|arg| describe_setting(lenient(arg), &defaults)))
+        command.mut_subcommand(name, |sub| sub.mut_args(|arg| describe_setting(lenient(arg))))
     })
 }
 
@@ -351,10 +331,10 @@ fn lenient(arg: clap::Arg) -> clap::Arg {
 }
 
 /// Adds its default to the help of a setting, and says what numbers are expected.
-fn describe_setting(arg: clap::Arg, defaults: &toml::Table) -> clap::Arg {
-    let Some(default) = arg.get_long().and_then(|long| defaults.get(long)) else { return arg };
+fn describe_setting(arg: clap::Arg) -> clap::Arg {
+    let Some(default) = arg.get_long().and_then(|long| Settings::default().get(long)) else { return arg };
     let help = arg.get_help().map(ToString::to_string).unwrap_or_default();
-    let arg = arg.help(format!("{help} [default: {}]", spelled(default)));
+    let arg = arg.help(format!("{help} [default: {default}]"));
     let value = arg.get_value_parser().type_id();
     if value == TypeId::of::<u32>() {
         let (least, most) = if arg.get_long() == Some("spp") { (1, 65536) } else { (0, u32::MAX) };
@@ -390,16 +370,6 @@ fn auto<T: FromStr<Err: Display>>(text: &str) -> Result<Auto<T>, String> {
 fn what(error: &impl Display) -> String {
     let text = error.to_string();
     text.strip_prefix("expected ").unwrap_or(&text).to_owned()
-}
-
-/// A value of a settings file as it is spelled on the command line.
-fn spelled(value: &toml::Value) -> String {
-    match value {
-        toml::Value::String(text) => text.clone(),
-        toml::Value::Float(number) => (*number as f32).to_string(), // settings are f32
-        toml::Value::Array(items) => items.iter().map(spelled).collect::<Vec<_>>().join(","),
-        other => other.to_string(),
-    }
 }
 
 /// Advice for a command line that names no command, such as `ambray scene.glb`.
@@ -485,8 +455,8 @@ mod tests {
         let mut command = command();
         let render = command.find_subcommand_mut("render").expect("render is a command");
         let help = render.render_long_help().to_string();
-        for name in toml::Table::try_from(Settings::default()).expect("settings are plain data").keys() {
-            assert!(help.contains(&format!("--{name}")), "{name} has no flag");
+        for field in Settings::fields() {
+            assert!(help.contains(&format!("--{}", field.name)), "{} has no flag", field.name);
         }
         assert!(help.contains("[default: 1280x720]") && help.contains("[default: 0.01]"), "{help}");
     }

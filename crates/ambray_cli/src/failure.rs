@@ -1,6 +1,9 @@
 //! Errors on their way to the user: one line each, a hint below, the exit code.
 
-use std::{fmt, io, process::ExitCode};
+use std::{io, process::ExitCode};
+
+use ambray_files::hint_of;
+pub use ambray_files::{Problems, with_hint};
 
 use crate::{
     signals::Interrupted,
@@ -11,39 +14,6 @@ use crate::{
 pub const EXIT_ERROR: u8 = 2;
 /// Exit code after Ctrl-C, as shells have it: 128 + SIGINT.
 pub const EXIT_INTERRUPTED: u8 = 130;
-
-/// Several problems found at once; each gets its own line.
-#[derive(Debug)]
-pub struct Problems(pub Vec<String>);
-
-impl fmt::Display for Problems {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0.join("; "))
-    }
-}
-
-impl std::error::Error for Problems {}
-
-/// An error with advice.
-#[derive(Debug)]
-struct Hinted {
-    error: anyhow::Error,
-    hint: String,
-}
-
-impl fmt::Display for Hinted {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:#}", self.error)
-    }
-}
-
-impl std::error::Error for Hinted {}
-
-/// Adds advice to an error, shown on a line of its own.
-#[must_use]
-pub fn with_hint(error: impl Into<anyhow::Error>, hint: impl Into<String>) -> anyhow::Error {
-    anyhow::Error::new(Hinted { error: error.into(), hint: hint.into() })
-}
 
 /// Prints `error` and returns the exit code. A reader who left (broken pipe) is no error.
 #[must_use]
@@ -70,7 +40,7 @@ fn lines(error: &anyhow::Error) -> Vec<String> {
         return problems.iter().map(|problem| format!("ambray: error: {}", one_line(problem))).collect();
     }
     let mut lines = vec![format!("ambray: error: {}", one_line(&format!("{error:#}")))];
-    lines.extend(error.downcast_ref::<Hinted>().map(|hinted| format!("  hint: {}", hinted.hint)));
+    lines.extend(hint_of(error).map(|hint| format!("  hint: {hint}")));
     lines
 }
 

@@ -1,19 +1,18 @@
 //! The `ambray` program as a library, so that tests and fuzzers reach its parts.
 //!
-//! The way of a command: [`args`] reads the command line without side effects, [`settings_file`] joins defaults, preset,
-//! file and flags into settings, [`commands`] do the work, [`output`] writes pictures, [`report`] says what was done.
+//! The way of a command: [`args`] reads the command line without side effects, [`settings`] joins defaults, preset,
+//! file and flags into settings, [`commands`] do the work, [`ambray_files`] writes pictures, [`report`] says what was done.
 #![forbid(unsafe_code)]
 
 pub mod args;
 pub mod commands;
 pub mod failure;
 pub mod machine;
-pub mod output;
 pub mod points;
 pub mod progress;
 pub mod report;
 pub mod scene_source;
-pub mod settings_file;
+pub mod settings;
 pub mod signals;
 pub mod terminal;
 pub mod timeline;

@@ -1,34 +1,18 @@
 //! Ctrl-C: work stops soon and leaves nothing half-written; a second one ends the program at once.
 
 use std::{
-    fmt, fs,
-    path::{Path, PathBuf},
     process,
-    sync::{
-        Mutex, PoisonError,
-        atomic::{AtomicBool, Ordering},
-    },
+    sync::atomic::{AtomicBool, Ordering},
 };
 
+pub use ambray_files::Interrupted;
+use ambray_files::{interruption, temporary};
 use anyhow::Context as _;
 
 use crate::{failure::EXIT_INTERRUPTED, terminal};
 
 static CANCEL: AtomicBool = AtomicBool::new(false);
 static GRACEFUL: AtomicBool = AtomicBool::new(false);
-static TEMPORARY: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
-
-/// The user pressed Ctrl-C.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Interrupted;
-
-impl fmt::Display for Interrupted {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("interrupted")
-    }
-}
-
-impl std::error::Error for Interrupted {}
 
 /// Starts to listen for Ctrl-C and for requests to terminate.
 ///
@@ -44,9 +28,7 @@ pub fn install() -> anyhow::Result<()> {
 }
 
 fn end_at_once() -> ! {
-    for path in TEMPORARY.lock().unwrap_or_else(PoisonError::into_inner).iter() {
-        let _ = fs::remove_file(path); // gone already if it was just renamed
-    }
+    temporary::remove_all();
     terminal::say("ambray: interrupted");
     process::exit(i32::from(EXIT_INTERRUPTED))
 }
@@ -59,7 +41,7 @@ pub fn cancel_flag() -> &'static AtomicBool {
 
 /// An error if Ctrl-C was pressed.
 pub fn check() -> Result<(), Interrupted> {
-    if CANCEL.load(Ordering::Relaxed) { Err(Interrupted) } else { Ok(()) }
+    interruption::check(&CANCEL)
 }
 
 /// While this lives, the first Ctrl-C only sets the [`cancel_flag`], for work that looks at it.
@@ -78,24 +60,5 @@ impl Graceful {
 impl Drop for Graceful {
     fn drop(&mut self) {
         GRACEFUL.store(false, Ordering::Relaxed);
-    }
-}
-
-/// A path that is removed if the program is ended at once while this lives.
-#[derive(Debug)]
-pub struct Temporary(PathBuf);
-
-impl Temporary {
-    /// Registers `path`.
-    #[must_use]
-    pub fn register(path: &Path) -> Self {
-        TEMPORARY.lock().unwrap_or_else(PoisonError::into_inner).push(path.to_owned());
-        Self(path.to_owned())
-    }
-}
-
-impl Drop for Temporary {
-    fn drop(&mut self) {
-        TEMPORARY.lock().unwrap_or_else(PoisonError::into_inner).retain(|path| *path != self.0);
     }
 }

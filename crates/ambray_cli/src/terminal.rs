@@ -22,9 +22,7 @@ pub fn print(text: &str) -> anyhow::Result<()> {
 
 /// Writes `bytes` to stdout.
 pub fn print_bytes(bytes: &[u8]) -> anyhow::Result<()> {
-    let mut stdout = io::stdout().lock();
-    stdout.write_all(bytes)?;
-    Ok(stdout.flush()?)
+    ambray_files::atomic::write_stdout(bytes)
 }
 
 /// Writes lines to stderr, if there is one.

@@ -12,7 +12,7 @@ use std::{
 use anyhow::{Context as _, bail};
 use tempfile::NamedTempFile;
 
-use crate::{failure::with_hint, signals, terminal};
+use crate::{problem::with_hint, temporary::Temporary};
 
 /// Where output goes.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -130,7 +130,7 @@ impl<T: Write + Seek> Output for T {}
 pub struct Pending {
     temporary: NamedTempFile,
     destination: PathBuf,
-    _registered: signals::Temporary,
+    _registered: Temporary,
 }
 
 impl Pending {
@@ -142,7 +142,7 @@ impl Pending {
         // A link keeps being one: the file that it points to is replaced.
         let destination = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         let temporary = temporary_in(folder_of(&destination))?;
-        let registered = signals::Temporary::register(temporary.path());
+        let registered = Temporary::register(temporary.path());
         Ok(Self { temporary, destination, _registered: registered })
     }
 
@@ -196,7 +196,7 @@ impl Batch {
                 let context = || format!("output {}", destination.display());
                 temporary.persist(&destination).map(drop).map_err(|e| e.error).with_context(context)
             }
-            Staged::Bytes { bytes, target: Target::Stdout } => terminal::print_bytes(&bytes),
+            Staged::Bytes { bytes, target: Target::Stdout } => write_stdout(&bytes),
             Staged::Bytes { bytes, target: Target::File(path) } => File::options()
                 .write(true)
                 .open(&path)
@@ -204,6 +204,13 @@ impl Batch {
                 .with_context(|| format!("output {}", path.display())),
         })
     }
+}
+
+/// Writes `bytes` to stdout.
+pub fn write_stdout(bytes: &[u8]) -> anyhow::Result<()> {
+    let mut stdout = std::io::stdout().lock();
+    stdout.write_all(bytes)?;
+    Ok(stdout.flush()?)
 }
 
 fn stage(

@@ -1,19 +1,21 @@
 //! OpenEXR files: the picture as R, G, B, every other plane as a layer `plane.channel`; 32-bit floats, linear, ZIP.
 
-use ambray::{Aov, Frame};
+use ambray::{
+    Aov, Frame,
+    camera::{Camera, Projection},
+};
 use exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Compression, Encoding, FlatSamples, Image, Layer,
     LayerAttributes, LineOrder, SmallVec, Text, WritableImage as _, attribute::Matrix4x4,
 };
 
-use super::{atomic::Output, head::SOFTWARE};
-use crate::report::CameraReport;
+use crate::{atomic::Output, head::SOFTWARE};
 
 /// Attribute that holds the settings as TOML.
-pub const SETTINGS_ATTRIBUTE: &str = "ambraySettings";
+pub(crate) const SETTINGS_ATTRIBUTE: &str = "ambraySettings";
 
 /// Writes the picture and `planes` of `frame`; `settings` as TOML and the name of the scene go to the header.
-pub fn write(
+pub(crate) fn write(
     output: &mut dyn Output,
     frame: &Frame,
     planes: &[Aov],
@@ -37,7 +39,7 @@ pub fn write(
 
 /// Names of the channels of a file with `planes` besides the picture, in its order.
 #[must_use]
-pub fn channel_names(planes: &[Aov]) -> Vec<String> {
+pub(crate) fn channel_names(planes: &[Aov]) -> Vec<String> {
     let mut names: Vec<_> = with_picture(planes).flat_map(names).collect();
     names.sort();
     names
@@ -64,8 +66,11 @@ fn layer(frame: &Frame, aov: Aov) -> impl Iterator<Item = AnyChannel<FlatSamples
 }
 
 fn attributes(frame: &Frame, settings: &str, scene: &str) -> LayerAttributes {
-    let camera = CameraReport::of(&frame.view);
-    let vertical = camera.vertical_fov_degrees;
+    let camera = &frame.view.camera;
+    let vertical = match camera.projection() {
+        Projection::Perspective { vertical_fov } => Some(vertical_fov.to_degrees()),
+        Projection::Orthographic { .. } => None,
+    };
     let horizontal = vertical.map(|degrees| {
         let half_height = (0.5 * degrees.to_radians()).tan();
         (2.0 * (half_height * frame.width as f32 / frame.height as f32).atan()).to_degrees()
@@ -75,7 +80,7 @@ fn attributes(frame: &Frame, settings: &str, scene: &str) -> LayerAttributes {
     LayerAttributes {
         software_name: Some(Text::from(SOFTWARE)),
         comments: Some(utf8(scene)),
-        world_to_camera: Some(world_to_camera(&camera)),
+        world_to_camera: Some(world_to_camera(camera)),
         vertical_field_of_view: vertical,
         horizontal_field_of_view: horizontal,
         other: other.into_iter().collect(),
@@ -89,9 +94,10 @@ fn utf8(text: &str) -> Text {
 }
 
 /// For row vectors, p · M, as OpenEXR has it: x right, y up, z forward.
-fn world_to_camera(camera: &CameraReport) -> Matrix4x4 {
-    let axes = [camera.right, camera.up, camera.forward];
-    let dot = |axis: [f32; 3]| (0..3).map(|i| axis[i] * camera.position[i]).sum::<f32>();
+fn world_to_camera(camera: &Camera) -> Matrix4x4 {
+    let axes = [camera.right(), camera.up(), camera.forward()].map(|axis| axis.to_array());
+    let position = camera.position().to_array();
+    let dot = |axis: [f32; 3]| (0..3).map(|i| axis[i] * position[i]).sum::<f32>();
     let mut matrix = [0.0; 16];
     for (column, axis) in axes.into_iter().enumerate() {
         for row in 0..3 {

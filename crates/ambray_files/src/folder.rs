@@ -7,7 +7,7 @@ use std::{
 
 use anyhow::Context as _;
 
-use super::atomic::{check_folder, folder_of};
+use crate::atomic::{check_folder, folder_of};
 
 /// A folder that files can be written to, once it is there.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -9,8 +9,7 @@ use std::{
 use anyhow::Context as _;
 use exr::prelude::{AttributeValue, Text};
 
-use super::exr::SETTINGS_ATTRIBUTE;
-use crate::{args::Format, settings_file::PNG_KEYWORD};
+use crate::{Format, exr::SETTINGS_ATTRIBUTE, settings_file::PNG_KEYWORD};
 
 /// Keyword of the text in a PNG picture that names its scene.
 pub const SCENE_KEYWORD: &str = "ambray:scene";

@@ -7,7 +7,7 @@ use std::{
 
 use anyhow::{anyhow, bail};
 
-use crate::failure::with_hint;
+use crate::problem::with_hint;
 
 /// The name of a file with a run of `#` that stands for the number of the frame.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,31 +1,23 @@
 //! Pictures out: which files, in which format, with which planes.
 
-pub mod atomic;
-pub mod exr;
-pub mod folder;
-pub mod head;
-pub mod numbering;
-pub mod png;
-pub mod video;
-pub mod whole;
-
 use std::{
     path::{Path, PathBuf},
+    sync::atomic::AtomicBool,
     time::SystemTime,
 };
 
 use ambray::{Aov, Frame, display, settings::Settings};
 use anyhow::{anyhow, bail};
 
-use self::{
-    atomic::{Batch, Target},
-    head::{Head, SCENE_KEYWORD, SOFTWARE},
-    png::Bits,
-};
 use crate::{
-    args::{Format, Planes},
-    failure::with_hint,
-    settings_file,
+    Format,
+    atomic::{Batch, Target},
+    exr,
+    head::{Head, SCENE_KEYWORD, SOFTWARE},
+    interruption,
+    png::{self, Bits},
+    problem::with_hint,
+    settings_file, whole,
 };
 
 /// Which files a frame becomes. Made before the frame, so that what cannot be written is refused early.
@@ -45,7 +37,7 @@ impl Plan {
         output: Option<&Path>,
         default: &str,
         format: Option<Format>,
-        planes: &[Planes],
+        planes: &[Aov],
     ) -> anyhow::Result<Self> {
         let default = Path::new(default).with_extension(format.unwrap_or(Format::Png8).extension());
         let main = Target::of(output.unwrap_or(&default));
@@ -111,13 +103,14 @@ impl Plan {
         })
     }
 
-    /// Writes the files of `frame` to `batch`.
+    /// Writes the files of `frame` to `batch`; the flag `cancel` ends it between two files.
     pub fn write(
         &self,
         frame: &Frame,
         settings: &Settings,
         scene: &str,
         batch: &mut Batch,
+        cancel: &AtomicBool,
     ) -> anyhow::Result<()> {
         let toml = settings_file::write(settings);
         let bits = match self.format {
@@ -133,7 +126,7 @@ impl Plan {
             let picture = display::show(frame, aov, settings);
             let size = (frame.width, frame.height);
             batch.add(&target, |out| png::write(out, size, &picture, bits, &texts))?;
-            crate::signals::check()?;
+            interruption::check(cancel)?;
         }
         Ok(())
     }
@@ -178,9 +171,8 @@ fn decide_format(target: &Target, format: Option<Format>) -> anyhow::Result<Form
 }
 
 /// The planes of the list besides the picture itself, each once.
-fn distinct(planes: &[Planes]) -> Vec<Aov> {
-    let asked = |aov: &Aov| planes.iter().any(|p| *p == Planes::All || *p == Planes::One(*aov));
-    Aov::ALL.iter().copied().filter(|aov| *aov != Aov::Beauty && asked(aov)).collect()
+fn distinct(planes: &[Aov]) -> Vec<Aov> {
+    Aov::ALL.iter().copied().filter(|aov| *aov != Aov::Beauty && planes.contains(aov)).collect()
 }
 
 /// `dir/out.png` becomes `dir/out.depth.png`.
@@ -218,9 +210,8 @@ mod tests {
 
     #[test]
     fn planes_are_listed_once_and_without_the_picture() {
-        let list = [Planes::One(Aov::Depth), Planes::One(Aov::Beauty), Planes::One(Aov::Depth)];
-        assert_eq!(distinct(&list), [Aov::Depth]);
-        assert_eq!(distinct(&[Planes::All]).len(), Aov::ALL.len() - 1);
+        assert_eq!(distinct(&[Aov::Depth, Aov::Beauty, Aov::Depth]), [Aov::Depth]);
+        assert_eq!(distinct(Aov::ALL).len(), Aov::ALL.len() - 1);
         assert_eq!(plane_path(Path::new("d/a.b.png"), Aov::Depth), Path::new("d/a.b.depth.png"));
     }
 }

@@ -7,7 +7,7 @@ use png::{BitDepth, ColorType, Compression, Encoder, SrgbRenderingIntent};
 
 /// Bits of a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Bits {
+pub(crate) enum Bits {
     /// 8 bits.
     Eight,
     /// 16 bits.
@@ -15,7 +15,7 @@ pub enum Bits {
 }
 
 /// Writes `picture` with `texts` as keyword and text.
-pub fn write(
+pub(crate) fn write(
     output: impl Write,
     (width, height): (u32, u32),
     picture: &Picture,

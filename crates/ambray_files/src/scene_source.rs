@@ -1,4 +1,4 @@
-//! From the word on the command line to a scene in memory.
+//! From the word for a scene to the scene in memory.
 
 use std::{
     path::Path,
@@ -8,7 +8,7 @@ use std::{
 use ambray::scene::{LoadOptions, Scene, SceneChoice, atrium, load_with, moving};
 use anyhow::bail;
 
-use crate::{failure::with_hint, terminal};
+use crate::problem::with_hint;
 
 /// What makes a scene.
 type Make = fn() -> Scene;
@@ -36,7 +36,12 @@ pub struct Source {
     pub load_time: Duration,
 }
 
-/// Loads the scene at `path`, or a built-in one, and shows the warnings.
+/// Loads the scene at `path`, or a built-in one if `path` is its word; of a glTF file with several scenes `gltf_scene`, by
+/// number or by name.
+///
+/// # Errors
+///
+/// If the file cannot be read, or has no such scene.
 pub fn open(path: &Path, gltf_scene: Option<&str>) -> anyhow::Result<Source> {
     let start = Instant::now();
     let built_in = BUILT_IN.iter().find(|(word, _)| path == Path::new(word));
@@ -55,9 +60,6 @@ pub fn open(path: &Path, gltf_scene: Option<&str>) -> anyhow::Result<Source> {
         })?;
         (loaded.scene, loaded.warnings)
     };
-    for warning in &warnings {
-        terminal::warn(&format!("{}: {warning}", path.display()));
-    }
     let name = path.display().to_string();
     Ok(Source {
         scene,
@@ -82,15 +84,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn built_in_scenes_are_named_in_help_and_hint() {
-        let command = crate::args::command();
+    fn built_in_scenes_are_named_in_the_hint() {
         for (word, _) in BUILT_IN {
             assert!(HINT.contains(word), "{word}");
-            for name in ["render", "query", "bench", "info"] {
-                let sub = command.find_subcommand(name).expect("a command");
-                let scene = sub.get_positionals().next().and_then(|arg| arg.get_help()).expect("help");
-                assert!(scene.to_string().contains(word), "{name}: {scene}");
-            }
         }
+        let error = open(Path::new("no such scene"), None).unwrap_err();
+        assert_eq!(crate::hint_of(&error), Some(HINT));
+    }
+
+    #[test]
+    fn built_in_scenes_are_one_scene() {
+        let source = open(Path::new("banner"), None).unwrap();
+        assert_eq!((source.label.as_str(), source.modified, source.warnings.len()), ("banner", None, 0));
+        let error = open(Path::new("banner"), Some("1")).unwrap_err().to_string();
+        assert!(error.starts_with("--gltf-scene is not allowed with banner"), "{error}");
     }
 }

@@ -9,14 +9,14 @@ use std::{
 use anyhow::Context as _;
 use exr::{block, meta::MetaData};
 
-use crate::args::Format;
+use crate::Format;
 
 /// The chunk that ends a PNG file: no bytes, its name, its checksum.
 const PNG_END: &[u8; 12] = b"\0\0\0\0IEND\xAE\x42\x60\x82";
 
 /// Whether the picture at `path`, of this `format`, ends where it should. The pixels are not decoded.
 #[must_use]
-pub fn is_whole(path: &Path, format: Format) -> bool {
+pub(crate) fn is_whole(path: &Path, format: Format) -> bool {
     let Ok(file) = File::open(path) else { return false };
     match format {
         Format::Png8 | Format::Png16 => ends_as_png(file),

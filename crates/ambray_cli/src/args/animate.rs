@@ -3,7 +3,7 @@
 use ambray::scene::animation::UpdatePolicy;
 use clap::{Args, ValueEnum};
 
-use super::{sequence::Rate, whole};
+use super::{Rate, whole};
 
 /// How acceleration structures follow what deforms.
 #[derive(Clone, Copy, Debug, Args)]

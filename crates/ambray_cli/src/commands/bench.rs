@@ -7,6 +7,10 @@ use std::{
 };
 
 use ambray::{RayCounts, Renderer, RendererOptions, settings::Settings};
+use ambray_files::{
+    atomic::{Batch, Target},
+    settings_file,
+};
 use anyhow::bail;
 use serde::Serialize;
 
@@ -19,13 +23,12 @@ use super::{
 use crate::{
     args::{BenchArgs, SettingsArgs},
     machine::Machine,
-    output::atomic::{Batch, Target},
     progress::Progress,
     report::{
         self, AccelerationReport, BackendReport, BuildReport, RayReport, SceneReport, Spread, StageReport,
         ViewReport, quantile,
     },
-    scene_source, settings_file, signals, terminal,
+    scene_source, settings, signals, terminal,
 };
 
 /// Frames that are measured unless `--frames` says otherwise.
@@ -64,7 +67,7 @@ struct SceneBench {
 /// Measures the scenes.
 pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
     let settings =
-        settings_file::resolve(&SettingsArgs { flags: thin_cost::flags(args)?, ..args.settings.clone() })?;
+        settings::resolve(&SettingsArgs { flags: thin_cost::flags(args)?, ..args.settings.clone() })?;
     let options = following(&args.backend.options(args.grouping.grouping)?, args.updates.updates);
     check_animate(args)?;
     let target = args.output.as_deref().map(Target::of);

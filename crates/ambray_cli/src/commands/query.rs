@@ -8,16 +8,19 @@ use std::{
 };
 
 use ambray::{QueryPoint, RenderError, Renderer, settings::Settings};
+use ambray_files::{
+    atomic::{Batch, Target},
+    settings_file,
+};
 use anyhow::{Context as _, anyhow, bail};
 
 use super::{check_animation, control, explained, renderer};
 use crate::{
     args::{Grouping, QueryArgs},
-    output::atomic::{Batch, Target},
     points::{self, Reader},
     progress::Progress,
     report::{BackendReport, counted, rate},
-    scene_source, settings_file, terminal,
+    scene_source, settings, terminal,
 };
 
 /// Points that are evaluated together: enough to keep the threads busy, few enough for small memory.
@@ -25,7 +28,7 @@ const CHUNK: usize = 1 << 15;
 
 /// Evaluates points.
 pub fn run(args: &QueryArgs) -> anyhow::Result<()> {
-    let settings = settings_file::resolve(&args.settings)?;
+    let settings = settings::resolve(&args.settings)?;
     let options = args.backend.options(Grouping::Auto)?;
     let target = Target::of(args.output.as_deref().unwrap_or(Path::new("-")));
     target.check()?;

@@ -3,21 +3,22 @@
 use std::time::Instant;
 
 use ambray::{Renderer, RendererOptions, scene::Scene, settings::Settings};
+use ambray_files::{
+    Plan,
+    atomic::{Batch, Target},
+    settings_file,
+    video::Kind,
+};
 use anyhow::bail;
 use serde::Serialize;
 
 use super::{check_animation, check_memory, control, explained, following, renderer, sequence, video};
 use crate::{
-    args::{Grouping, RenderArgs},
-    output::{
-        Plan,
-        atomic::{Batch, Target},
-        video::Kind,
-    },
+    args::{Grouping, Planes, RenderArgs},
     progress::Progress,
     report::{self, RenderReport, SceneReport},
     scene_source::{self, Source},
-    settings_file, signals, terminal,
+    settings, signals, terminal,
 };
 
 /// Stem of the picture where no name was given.
@@ -40,7 +41,7 @@ fn still(request: &Request<'_>) -> anyhow::Result<()> {
     if let Some(option) = args.sequence.needs_frames() {
         bail!("{option} is not allowed without --frames: it is about sequences");
     }
-    let plan = Plan::new(args.output.as_deref(), DEFAULT_STEM, args.format, &args.aov)?;
+    let plan = Plan::new(args.output.as_deref(), DEFAULT_STEM, args.format, &Planes::of(&args.aov))?;
     plan.check()?;
     if args.json && plan.main == Target::Stdout {
         bail!("--json is not allowed with -o -: both write to stdout");
@@ -60,7 +61,7 @@ fn still(request: &Request<'_>) -> anyhow::Result<()> {
 
     let start = Instant::now();
     let mut batch = Batch::default();
-    plan.write(&frame, settings, &label, &mut batch)?;
+    plan.write(&frame, settings, &label, &mut batch, signals::cancel_flag())?;
     request.add_saved(&mut batch)?;
     signals::check()?;
     batch.commit()?;
@@ -82,7 +83,7 @@ pub(super) struct Request<'a> {
 
 impl<'a> Request<'a> {
     fn new(args: &'a RenderArgs) -> anyhow::Result<Self> {
-        let settings = settings_file::resolve(&args.settings)?;
+        let settings = settings::resolve(&args.settings)?;
         let options = following(&args.backend.options(Grouping::Auto)?, args.updates.updates);
         let saved = args.settings.save_settings.as_deref().map(Target::of);
         if args.json && saved == Some(Target::Stdout) {

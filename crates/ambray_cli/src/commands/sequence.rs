@@ -3,18 +3,18 @@
 use std::time::Instant;
 
 use ambray::{Frame, Renderer, settings::Settings};
+use ambray_files::{
+    Plan,
+    atomic::{Batch, Target},
+    folder::Folder,
+    numbering::Numbering,
+};
 use anyhow::{anyhow, bail};
 
 use super::{check_memory, control, explained, render::Request};
 use crate::{
-    args::{Frames, RenderArgs},
+    args::{Frames, Planes, RenderArgs},
     failure::with_hint,
-    output::{
-        Plan,
-        atomic::{Batch, Target},
-        folder::Folder,
-        numbering::Numbering,
-    },
     progress::Progress,
     report::{SceneReport, Tally},
     scene_source::Source,
@@ -48,7 +48,7 @@ pub(super) fn run(request: &Request<'_>, frames: Frames) -> anyhow::Result<()> {
     let outcome = player.play(&steps, &|number| pictures.names(number), &mut |number, settings, frame| {
         let mut batch = Batch::default();
         pictures.folder.create()?;
-        pictures.at(number).write(frame, settings, &label, &mut batch)?;
+        pictures.at(number).write(frame, settings, &label, &mut batch, signals::cancel_flag())?;
         signals::check()?;
         batch.commit()
     });
@@ -108,7 +108,7 @@ struct Pictures {
 
 impl Pictures {
     fn new(args: &RenderArgs, frames: Frames) -> anyhow::Result<Self> {
-        let plan = Plan::new(args.output.as_deref(), DEFAULT_STEM, args.format, &args.aov)?;
+        let plan = Plan::new(args.output.as_deref(), DEFAULT_STEM, args.format, &Planes::of(&args.aov))?;
         let Target::File(path) = &plan.main else {
             let error = anyhow!("-o - is not allowed with --frames: stdout takes one picture");
             return Err(with_hint(error, "for one moment: --time SECONDS without --frames"));

@@ -2,6 +2,10 @@
 
 use std::{path::Path, time::Instant};
 
+use ambray_files::{
+    atomic::{Batch, Pending, Target},
+    video::{Kind, pixels},
+};
 use anyhow::{Context as _, anyhow, bail};
 
 use super::{
@@ -12,10 +16,6 @@ use super::{
 use crate::{
     args::Frames,
     failure::with_hint,
-    output::{
-        atomic::{Batch, Pending, Target},
-        video::{Kind, pixels},
-    },
     report::{SceneReport, Tally},
     scene_source::Source,
     signals,
@@ -48,7 +48,8 @@ pub(super) fn run(request: &Request<'_>, kind: Kind, path: &Path) -> anyhow::Res
     let (start, mut tally) = (Instant::now(), Tally::default());
     let graceful = signals::Graceful::begin();
     let pending = Pending::new(path).with_context(context)?;
-    let mut video = kind.begin(&pending, settings.size, rate).with_context(context)?;
+    let mut video =
+        kind.begin(&pending, settings.size, rate, signals::cancel_flag()).with_context(context)?;
     let mut player = Player { args, renderer: &mut renderer, timeline: &timeline, tally: &mut tally };
     player.play(&steps, &|_| Vec::new(), &mut |_, settings, frame| {
         video.frame(&pixels(frame, settings)?).with_context(context)

@@ -6,6 +6,7 @@ use std::{
     io::{BufRead as _, BufReader, Write as _},
     path::Path,
     process::{Child, ChildStderr, ChildStdin, Command, ExitStatus, Stdio},
+    sync::atomic::AtomicBool,
     thread::{self, JoinHandle},
     time::Duration,
 };
@@ -14,7 +15,7 @@ use ambray::settings::Size;
 use anyhow::{Context as _, anyhow};
 
 use super::{Encode, Kind};
-use crate::{args::Rate, signals};
+use crate::{Rate, interruption};
 
 const PROGRAM: &str = "ffmpeg";
 
@@ -69,16 +70,24 @@ fn encoding(kind: Kind) -> Vec<&'static str> {
 }
 
 /// A running ffmpeg.
-pub(super) struct Ffmpeg {
+pub(super) struct Ffmpeg<'a> {
+    /// Ends the wait for it.
+    cancel: &'a AtomicBool,
     child: Child,
     stdin: Option<ChildStdin>,
     /// Reads what it complains about, and returns the last line.
     complaints: Option<JoinHandle<String>>,
 }
 
-impl Ffmpeg {
+impl<'a> Ffmpeg<'a> {
     /// Starts it to write the file at `path`.
-    pub(super) fn start(kind: Kind, path: &Path, size: Size, rate: Rate) -> anyhow::Result<Self> {
+    pub(super) fn start(
+        kind: Kind,
+        path: &Path,
+        size: Size,
+        rate: Rate,
+        cancel: &'a AtomicBool,
+    ) -> anyhow::Result<Self> {
         let (frames, seconds) = rate.fraction();
         let mut command = Command::new(PROGRAM);
         command.args([
@@ -99,16 +108,16 @@ impl Ffmpeg {
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         let mut child = command.spawn().context("ffmpeg could not be started")?;
         let complaints = child.stderr.take().map(|stderr| thread::spawn(move || last_line(stderr)));
-        Ok(Self { stdin: child.stdin.take(), child, complaints })
+        Ok(Self { cancel, stdin: child.stdin.take(), child, complaints })
     }
 
-    /// Waits for the end; Ctrl-C is heard meanwhile.
+    /// Waits for the end; it may be interrupted meanwhile.
     fn wait(&mut self) -> anyhow::Result<ExitStatus> {
         loop {
             if let Some(status) = self.child.try_wait().context("ffmpeg")? {
                 return Ok(status);
             }
-            signals::check()?;
+            interruption::check(self.cancel)?;
             thread::sleep(Duration::from_millis(10));
         }
     }
@@ -140,7 +149,7 @@ fn last_line(stderr: ChildStderr) -> String {
     lines.filter(|line| !line.is_empty()).last().unwrap_or_default()
 }
 
-impl Encode for Ffmpeg {
+impl Encode for Ffmpeg<'_> {
     fn frame(&mut self, rgb: &[u8]) -> anyhow::Result<()> {
         let Some(stdin) = &mut self.stdin else { return Err(self.failure()) };
         if stdin.write_all(rgb).is_ok() {
@@ -157,7 +166,7 @@ impl Encode for Ffmpeg {
     }
 }
 
-impl Drop for Ffmpeg {
+impl Drop for Ffmpeg<'_> {
     fn drop(&mut self) {
         // Both fail if it has ended, as it should have.
         let _ = self.child.kill();

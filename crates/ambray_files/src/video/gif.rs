@@ -10,7 +10,7 @@ use ambray::settings::Size;
 use anyhow::{Context as _, bail};
 
 use super::Encode;
-use crate::args::Rate;
+use crate::Rate;
 
 /// Effort of choosing colours, 1 best to 30 fastest, as the library has it by default for whole videos.
 const SPEED: i32 = 10;

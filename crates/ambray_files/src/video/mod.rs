@@ -3,13 +3,12 @@
 mod ffmpeg;
 mod gif;
 
-use std::path::Path;
+use std::{path::Path, sync::atomic::AtomicBool};
 
 use ambray::{Aov, Frame, display, settings::Settings, settings::Size};
 use anyhow::{anyhow, bail};
 
-use super::atomic::Pending;
-use crate::{args::Rate, failure::with_hint};
+use crate::{Rate, atomic::Pending, problem::with_hint};
 
 /// Kind of a video file, by its extension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,16 +57,17 @@ impl Kind {
         Ok(())
     }
 
-    /// Begins a video in the file `pending`.
+    /// Begins a video in the file `pending`; the flag `cancel` ends waits for other programs.
     pub fn begin<'a>(
         self,
         pending: &'a Pending,
         size: Size,
         rate: Rate,
+        cancel: &'a AtomicBool,
     ) -> anyhow::Result<Box<dyn Encode + 'a>> {
         Ok(match self {
             Self::Gif => Box::new(gif::Gif::new(pending.file(), size, rate)?),
-            _ => Box::new(ffmpeg::Ffmpeg::start(self, pending.path(), size, rate)?),
+            _ => Box::new(ffmpeg::Ffmpeg::start(self, pending.path(), size, rate, cancel)?),
         })
     }
 }
