@@ -5,11 +5,11 @@ mod backend;
 mod notes;
 mod sequence;
 
-use std::{any::TypeId, ffi::OsString, fmt::Display, path::PathBuf, str::FromStr};
+use std::{ffi::OsString, fmt::Display, path::PathBuf, str::FromStr};
 
 use ambray::{
     Aov,
-    settings::{Auto, Preset, Range, Rgb, Settings, SettingsPatch, Size, Triple},
+    settings::{Auto, Kind, Preset, Range, Rgb, Settings, SettingsPatch, Size, Triple, Value},
 };
 use clap::{
     Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum,
@@ -330,46 +330,31 @@ fn lenient(arg: clap::Arg) -> clap::Arg {
     arg.allow_negative_numbers(has_value && !is_list).allow_hyphen_values(has_value && is_list)
 }
 
-/// Adds its default to the help of a setting, and says what numbers are expected.
+/// Adds its default to the help of a setting, and says what values are expected.
 fn describe_setting(arg: clap::Arg) -> clap::Arg {
-    let Some(default) = arg.get_long().and_then(|long| Settings::default().get(long)) else { return arg };
-    let help = arg.get_help().map(ToString::to_string).unwrap_or_default();
-    let arg = arg.help(format!("{help} [default: {default}]"));
-    let value = arg.get_value_parser().type_id();
-    if value == TypeId::of::<u32>() {
-        let (least, most) = if arg.get_long() == Some("spp") { (1, 65536) } else { (0, u32::MAX) };
-        // Numbers out of range pass here: the check of all settings tells them together.
-        arg.value_parser(move |text: &str| whole(text, 0, u32::MAX).or_else(|_| whole(text, least, most)))
-    } else if value == TypeId::of::<f32>() {
-        arg.value_parser(|text: &str| text.parse::<f32>().map_err(|_| "a number"))
-    } else if value == TypeId::of::<Auto<f32>>() {
-        arg.value_parser(|text: &str| text.parse::<Auto<f32>>().map_err(|_| "auto or a number"))
-    } else if value == TypeId::of::<Size>() {
-        arg.value_parser(|text: &str| text.parse::<Size>().map_err(|error| what(&error)))
-    } else if value == TypeId::of::<Rgb>() {
-        arg.value_parser(|text: &str| text.parse::<Rgb>().map_err(|error| what(&error)))
-    } else if value == TypeId::of::<Auto<Rgb>>() {
-        arg.value_parser(auto::<Rgb>)
-    } else if value == TypeId::of::<Auto<Triple>>() {
-        arg.value_parser(auto::<Triple>)
-    } else if value == TypeId::of::<Auto<Range>>() {
-        arg.value_parser(auto::<Range>)
-    } else {
-        arg
+    let Some(field) = arg.get_long().and_then(Settings::field) else { return arg };
+    let default = Settings::default().get(field.name).expect("every field has a value");
+    let arg = arg.help(format!("{} [default: {default}]", field.doc));
+    match field.kind {
+        Kind::Whole => {
+            let (least, most) = if field.name == "spp" { (1, 65536) } else { (0, u32::MAX) };
+            // Numbers out of range pass here: the check of all settings tells them together.
+            arg.value_parser(move |text: &str| whole(text, 0, u32::MAX).or_else(|_| whole(text, least, most)))
+        }
+        Kind::Number => arg.value_parser(read::<f32>),
+        Kind::AutoNumber => arg.value_parser(read::<Auto<f32>>),
+        Kind::Size => arg.value_parser(read::<Size>),
+        Kind::Rgb => arg.value_parser(read::<Rgb>),
+        Kind::AutoRgb => arg.value_parser(read::<Auto<Rgb>>),
+        Kind::AutoTriple => arg.value_parser(read::<Auto<Triple>>),
+        Kind::AutoRange => arg.value_parser(read::<Auto<Range>>),
+        Kind::Flag | Kind::Choice(_) | Kind::AutoText => arg, // as clap reads them
     }
 }
 
-fn auto<T: FromStr<Err: Display>>(text: &str) -> Result<Auto<T>, String> {
-    if text == "auto" {
-        return Ok(Auto::Auto);
-    }
-    text.parse().map(Auto::Value).map_err(|error| format!("auto or {}", what(&error)))
-}
-
-/// What is allowed, without the word "expected" that the errors of values begin with.
-fn what(error: &impl Display) -> String {
-    let text = error.to_string();
-    text.strip_prefix("expected ").unwrap_or(&text).to_owned()
+/// The value of a setting; the error says what is expected.
+fn read<T: Value>(text: &str) -> Result<T, String> {
+    T::read(text).map_err(|error| error.expected().to_owned())
 }
 
 /// Advice for a command line that names no command, such as `ambray scene.glb`.

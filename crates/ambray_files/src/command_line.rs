@@ -28,8 +28,24 @@ pub fn render_command(
         }
     }
     words.extend_from_slice(more);
+    words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ")
+}
+
+/// A word as a shell reads it: of `--name=value` the value alone is quoted, and only where it must be.
+fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_.,:/+@".contains(c);
+    let (option, value) = match word.split_once('=') {
+        Some((name, value)) if name.starts_with("--") && name.chars().all(is_plain) => {
+            (&word[..=name.len()], value)
+        }
+        _ => ("", word),
+    };
+    if !value.is_empty() && value.chars().all(is_plain) {
+        return word.to_owned();
+    }
     // No shell can pass a NUL, but it is better seen in the line than lost with the line.
-    shlex::Quoter::new().allow_nul(true).join(words.iter().map(String::as_str)).unwrap_or_default()
+    let value = shlex::Quoter::new().allow_nul(true).quote(value).unwrap_or_default();
+    format!("{option}{value}")
 }
 
 #[cfg(test)]
@@ -74,5 +90,6 @@ mod tests {
             "my picture.png",
         ];
         assert_eq!(words, expected, "{line}");
+        assert!(line.contains(" --gltf-scene='Scène *' "), "{line}");
     }
 }

@@ -5,7 +5,7 @@
 //! makes videos, [`command_line`] spells the call of `ambray render` that makes the same picture. All files appear complete
 //! or not at all ([`atomic`]), also where the program ends early ([`temporary`], [`interruption`]).
 //!
-//! Nothing here prints. Errors are chains of `anyhow` that read as one line, with advice beside them ([`hint_of`]).
+//! Nothing here speaks to people. Errors are chains of `anyhow` that read as one line, with advice beside them ([`hint_of`]).
 #![forbid(unsafe_code)]
 
 pub mod atomic;

@@ -47,3 +47,36 @@ pub(crate) fn write(
     })?;
     Ok(writer.finish()?)
 }
+
+#[cfg(test)]
+mod tests {
+    use std::io::Cursor;
+
+    use ambray::{display, settings::Ramp};
+
+    use super::*;
+
+    fn decoded(picture: &Picture, bits: Bits) -> (ColorType, Vec<u8>) {
+        let mut file = Vec::new();
+        write(&mut file, (3, 1), picture, bits, &[]).unwrap();
+        let mut reader = png::Decoder::new(Cursor::new(file)).read_info().unwrap();
+        let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+        let info = reader.next_frame(&mut bytes).unwrap();
+        (info.color_type, bytes)
+    }
+
+    #[test]
+    fn files_hold_the_bytes_that_windows_show() {
+        let grey = Picture::Grey(vec![0.0, 0.3, 1.0]);
+        let (color, bytes) = decoded(&grey, Bits::Eight);
+        let shown: Vec<_> = bytes.iter().flat_map(|&v| [v, v, v, 255]).collect();
+        assert_eq!((color, shown), (ColorType::Grayscale, grey.rgba8()));
+        assert_eq!(decoded(&grey, Bits::Sixteen), (ColorType::Grayscale, vec![0, 0, 0x4C, 0xCD, 255, 255]));
+
+        let pixels = [0.0, 0.3, 1.0].map(|t| display::shade(Ramp::Turbo, t)).to_vec();
+        let coloured = Picture::Rgb { pixels, is_color: true };
+        let (color, bytes) = decoded(&coloured, Bits::Eight);
+        let shown: Vec<_> = bytes.chunks_exact(3).flat_map(|v| [v[0], v[1], v[2], 255]).collect();
+        assert_eq!((color, shown), (ColorType::Rgb, coloured.rgba8()));
+    }
+}

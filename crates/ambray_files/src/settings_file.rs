@@ -102,7 +102,7 @@ fn names() -> Vec<&'static str> {
 
 /// What a setting means, with its default.
 fn meaning(name: &str) -> Option<String> {
-    let field = Settings::fields().iter().find(|field| field.name == name)?;
+    let field = Settings::field(name)?;
     Some(format!("{} [default: {}]", field.doc, Settings::default().get(name)?))
 }
 

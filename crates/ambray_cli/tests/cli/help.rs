@@ -39,6 +39,7 @@ fn samples(arg: &clap::Arg) -> Vec<String> {
     let sample = match name {
         "WIDTHxHEIGHT" => "64x36",
         "R,G,B" | "X,Y,Z" => "0.5,1,0.25",
+        "LOW,HIGH" => "0.5,1",
         "PLANES" => "depth,all",
         "A..B" => "0..9",
         _ => "1",

@@ -86,6 +86,30 @@ fn planes_become_layers_of_one_exr_file() {
 }
 
 #[test]
+fn scalars_are_shown_in_the_ramp_and_the_range_that_were_asked_for() {
+    let bench = Bench::new();
+    let shown = |arguments: &[&str]| {
+        bench.render(&[arguments, &["-o", "out.png", "--aov=depth,openness"]].concat()).succeeds();
+        ["out.depth.png", "out.openness.png", "out.png"].map(|name| Png::of(&bench.read(name)))
+    };
+    let [depth, openness, picture] = shown(&[]);
+    assert_eq!([depth.color, openness.color], [png::ColorType::Grayscale; 2]);
+    let [coloured_depth, coloured, same] = shown(&["--ramp=viridis"]);
+    assert_eq!([coloured_depth.color, coloured.color], [png::ColorType::Rgb; 2]);
+    assert_eq!(picture.bytes, same.bytes, "the picture itself has no ramp");
+    for (grey, colour) in openness.bytes.iter().zip(coloured.bytes.chunks_exact(3)) {
+        // Its end is yellow, and nothing else is as bright.
+        assert_eq!(*grey == 255, colour == [0xFD, 0xE7, 0x25], "{grey} {colour:?}");
+    }
+    let [_, halved, _] = shown(&["--range=0,2"]);
+    for (all, half) in openness.bytes.iter().zip(&halved.bytes) {
+        assert!((i16::from(*all) - 2 * i16::from(*half)).abs() <= 1, "{all} {half}");
+    }
+    bench.render(&["--range=2,1"]).fails(&["--range 2,1 is not allowed", "the smaller first"]);
+    bench.render(&["--range=2"]).fails(&["--range 2 is not allowed", "LOW,HIGH"]);
+}
+
+#[test]
 fn exr_header_tells_software_settings_and_camera() {
     let bench = Bench::new();
     let view = ["--camera-position=0,1,3", "--camera-target=0,1,0", "--vertical-fov=60"];

@@ -1,5 +1,7 @@
 //! What is known of each setting besides its value: for programs that offer settings to people.
 
+use std::str::FromStr;
+
 use super::{Auto, Range, Rgb, Size, Triple, ValueError, values::expected};
 
 /// Description of a setting.
@@ -54,10 +56,16 @@ impl Kind {
     }
 }
 
-/// A value that a setting may have, spelled as on the command line: its `Display` is what [`Value::read`] reads.
-pub(super) trait Value: Sized {
+/// A type of the values of settings, spelled as on the command line: its `Display` is what [`Value::read`] reads.
+pub trait Value: Sized {
+    /// What kind it is.
     const KIND: Kind;
 
+    /// Reads a value.
+    ///
+    /// # Errors
+    ///
+    /// If `text` is no value of this kind; tells what was expected.
     fn read(text: &str) -> Result<Self, ValueError>;
 }
 
@@ -93,28 +101,40 @@ pub enum SetError {
 }
 
 macro_rules! values {
-    ($($type:ty: $kind:ident, $expected:literal;)+) => { $(
+    ($($type:ty: $kind:ident = $read:expr;)+) => { $(
         impl Value for $type {
             const KIND: Kind = Kind::$kind;
 
             fn read(text: &str) -> Result<Self, ValueError> {
-                text.parse().map_err(|_| expected($expected))
+                $read(text)
             }
         }
     )+ };
 }
 
 values! {
-    u32: Whole, "a whole number, 0 to 4294967295";
-    f32: Number, "a number";
-    bool: Flag, "true or false";
-    Auto<f32>: AutoNumber, "auto or a number";
-    Size: Size, "WIDTHxHEIGHT, such as 640x360";
-    Rgb: Rgb, "R,G,B in linear light, such as 0.6,0.7,0.9, or one number for grey";
-    Auto<Rgb>: AutoRgb, "auto or R,G,B in linear light, such as 0.6,0.7,0.9, or one number for grey";
-    Auto<Triple>: AutoTriple, "auto or X,Y,Z, such as 0,1.6,-3";
-    Auto<Range>: AutoRange, "auto or LOW,HIGH, such as 0,2.5";
-    Auto<String>: AutoText, "auto or a name";
+    u32: Whole = |text| parse(text, "a whole number, 0 to 4294967295");
+    f32: Number = |text| parse(text, "a number");
+    bool: Flag = |text| parse(text, "true or false");
+    Size: Size = str::parse;
+    Rgb: Rgb = str::parse;
+    Auto<f32>: AutoNumber = |text| auto(text, f32::read);
+    Auto<Rgb>: AutoRgb = |text| auto(text, str::parse);
+    Auto<Triple>: AutoTriple = |text| auto(text, str::parse);
+    Auto<Range>: AutoRange = |text| auto(text, str::parse);
+    Auto<String>: AutoText = |text| auto(text, |name| Ok(name.to_owned()));
+}
+
+fn parse<T: FromStr>(text: &str, what: &str) -> Result<T, ValueError> {
+    text.parse().map_err(|_| expected(what))
+}
+
+/// The word `auto`, or what `read` reads.
+fn auto<T>(text: &str, read: impl Fn(&str) -> Result<T, ValueError>) -> Result<Auto<T>, ValueError> {
+    if text == "auto" {
+        return Ok(Auto::Auto);
+    }
+    read(text).map(Auto::Value).map_err(|error| expected(&format!("auto or {}", error.expected())))
 }
 
 #[cfg(test)]

@@ -17,7 +17,7 @@ pub use choices::{
     Falloff, FilterTest, NearRadiance, Normals, Preset, RadianceSource, Ramp, Sampling, Sequence, Temporal,
     Thin, ThinMinimum, ToneMap, Window,
 };
-pub use field::{Field, Kind, SetError};
+pub use field::{Field, Kind, SetError, Value};
 pub use table::{Settings, SettingsPatch};
 pub use validate::SettingsError;
 pub use values::{Auto, Range, Rgb, Size, Triple, ValueError};

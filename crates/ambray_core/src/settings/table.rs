@@ -48,6 +48,12 @@ macro_rules! settings {
                 FIELDS
             }
 
+            /// The description of the setting called `name`.
+            #[must_use]
+            pub fn field(name: &str) -> Option<&'static Field> {
+                Self::fields().iter().find(|field| field.name == name)
+            }
+
             /// The value of the setting called `name`, spelled as on the command line; `None` if there is no such setting.
             #[must_use]
             pub fn get(&self, name: &str) -> Option<String> {
