@@ -5,13 +5,9 @@ use std::{
     sync::{Arc, Mutex, OnceLock, PoisonError},
 };
 
-use ambray_core::{
-    control::Control,
-    frame::PoseStats,
-    trace::{Hit, Ray, Trace},
-};
+use ambray_core::{control::Control, frame::PoseStats};
 use ambray_cpu::{BuildOptions, CpuBackend};
-use ambray_scene::{Scene, animation::Pose};
+use ambray_scene::{Scene, animation::Pose, surface::Surfaces};
 use ambray_vulkan::{
     AccelerationOptions, Context, DeviceOptions, TraceMode, VulkanBackend, VulkanError, VulkanOptions,
 };
@@ -67,6 +63,8 @@ pub(crate) struct Backends {
     build: BuildOptions,
     vulkan: Option<VulkanBackend>,
     cpu: OnceLock<CpuBackend>,
+    /// What rays of the device hit, as the host sees it, with the pose that it shows. Made when it is first needed.
+    surfaces: Mutex<Option<(Option<Pose>, Arc<Surfaces>)>>,
     /// Whether the processor steps in for a device that fails.
     steps_in: bool,
     /// Why the processor renders although a device might.
@@ -100,6 +98,7 @@ impl Backends {
             build: options.build,
             vulkan: None,
             cpu: OnceLock::new(),
+            surfaces: Mutex::default(),
             steps_in: options.backend == BackendChoice::Auto,
             reason: OnceLock::new(),
         };
@@ -123,6 +122,7 @@ impl Backends {
             build: self.build,
             vulkan: None,
             cpu: OnceLock::new(),
+            surfaces: Mutex::default(),
             steps_in: self.steps_in,
             reason: self.reason.clone(),
         };
@@ -217,14 +217,30 @@ impl Backends {
         Ok(())
     }
 
+    /// The scene at its pose, with the vertices of what deforms there too.
+    fn posed_scene(&self) -> Arc<Scene> {
+        let mut scene = Arc::clone(&self.scene);
+        if let Some(pose) = &self.pose {
+            Arc::make_mut(&mut scene).deform(pose);
+        }
+        scene
+    }
+
+    /// What rays of the device hit, as the host sees it.
+    pub(crate) fn surfaces(&self) -> Arc<Surfaces> {
+        // Whole or empty at any time, so a panic of another thread does not matter.
+        let mut slot = self.surfaces.lock().unwrap_or_else(PoisonError::into_inner);
+        let surfaces = match slot.take() {
+            Some((pose, surfaces)) if pose == self.pose => surfaces,
+            Some((_, surfaces)) => Arc::new(surfaces.moved_to(self.posed_scene())),
+            None => Arc::new(Surfaces::new(self.posed_scene())),
+        };
+        *slot = Some((self.pose.clone(), Arc::clone(&surfaces)));
+        surfaces
+    }
+
     fn cpu(&self) -> &CpuBackend {
-        self.cpu.get_or_init(|| {
-            let mut scene = Arc::clone(&self.scene);
-            if let Some(pose) = &self.pose {
-                Arc::make_mut(&mut scene).deform(pose);
-            }
-            CpuBackend::new(scene, self.build)
-        })
+        self.cpu.get_or_init(|| CpuBackend::new(self.posed_scene(), self.build))
     }
 }
 
@@ -238,44 +254,4 @@ fn vulkan(
     let context = Context::new(&DeviceOptions { software, ..options.device.clone() })?;
     let options = VulkanOptions { trace: options.trace, acceleration: options.acceleration };
     VulkanBackend::new(&context, scene, options, control)
-}
-
-/// A device as the method's tracer: the first failure is kept, and everything misses from then on.
-pub(crate) struct DeviceTrace<'a> {
-    backend: &'a VulkanBackend,
-    failure: Mutex<Option<VulkanError>>,
-}
-
-impl<'a> DeviceTrace<'a> {
-    pub(crate) fn new(backend: &'a VulkanBackend) -> Self {
-        Self { backend, failure: Mutex::default() }
-    }
-
-    /// The first failure, if any.
-    pub(crate) fn finish(self) -> Result<(), VulkanError> {
-        self.failure.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(Ok(()), Err)
-    }
-
-    fn keep<T>(&self, result: Result<Vec<T>, VulkanError>, into: &mut [T], missed: T)
-    where
-        T: Copy,
-    {
-        match result {
-            Ok(values) => into.copy_from_slice(&values),
-            Err(error) => {
-                into.fill(missed);
-                self.failure.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
-            }
-        }
-    }
-}
-
-impl Trace for DeviceTrace<'_> {
-    fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit]) {
-        self.keep(self.backend.closest_hits(rays), hits, Hit::MISS);
-    }
-
-    fn any_hits(&self, rays: &[Ray], blocked: &mut [bool]) {
-        self.keep(self.backend.any_hits(rays), blocked, false);
-    }
 }

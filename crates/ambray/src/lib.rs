@@ -19,6 +19,7 @@
 #![forbid(unsafe_code)]
 
 mod backend;
+mod device;
 mod framing;
 mod renderer;
 mod resolve;
@@ -28,7 +29,9 @@ pub use ambray_core::{
     camera,
     control::Control,
     display,
+    filter,
     frame::{Frame, FrameStats, GBufferPixel, PoseStats, RayCounts, StageTimes},
+    inspect::{self, Inspection},
     light,
     query::{QueryPoint, QueryResult},
     settings, shape,

@@ -8,6 +8,7 @@ use std::{
 use ambray_core::{
     control::Control,
     frame::{Frame, FrameStats, PoseStats, StageTimes},
+    inspect::{Inspection, OutsidePicture, inspect},
     query::{QueryPoint, QueryResult},
     settings::{Settings, SettingsError},
     trace::{Hit, Ray, Trace},
@@ -20,7 +21,8 @@ use glam::Vec3;
 
 use crate::{
     BackendChoice, RendererOptions,
-    backend::{Backend, Backends, DeviceTrace},
+    backend::{Backend, Backends},
+    device::{DeviceTrace, DeviceWorld},
     framing::Framing,
     resolve,
 };
@@ -59,6 +61,9 @@ pub enum RenderError {
         /// What is wrong.
         reason: &'static str,
     },
+    /// A pixel outside the picture was to be inspected.
+    #[error(transparent)]
+    Pixel(#[from] OutsidePicture),
     /// The threads could not be started.
     #[error("the threads could not be started: {0}")]
     Threads(String),
@@ -333,6 +338,34 @@ impl Renderer {
         self.stepping_in(|backend| match backend {
             Backend::Cpu(cpu) => Ok(cpu.query(settings, &view, points, control)?),
             Backend::Vulkan(vulkan) => Ok(vulkan.query(settings, &view, points, control)?),
+        })
+    }
+
+    /// Everything that pixel (x, y) of `frame` did: its rays, chords, shadow rays and the taps of the filter. `frame` was
+    /// rendered by this renderer with these `settings`; the scene is moved to their time.
+    ///
+    /// On the processor [`Inspection::raw`] is what the frame has, bit for bit. A device traces the rays of an inspection,
+    /// but the rest is computed on the host: there they agree up to rounding.
+    ///
+    /// # Errors
+    /// If the pixel is outside the picture, and as [`render`](Self::render).
+    pub fn inspect(
+        &mut self,
+        settings: &Settings,
+        frame: &Frame,
+        pixel: (u32, u32),
+        control: Control<'_>,
+    ) -> Result<Inspection, RenderError> {
+        self.prepare(settings, control)?;
+        control.check().map_err(|_| RenderError::Cancelled)?;
+        self.stepping_in(|backend| match backend {
+            Backend::Cpu(cpu) => Ok(inspect(cpu.world(), settings, frame, pixel)?),
+            Backend::Vulkan(vulkan) => {
+                let world = DeviceWorld::new(vulkan, self.backends.surfaces());
+                let inspection = inspect(&world, settings, frame, pixel)?;
+                world.finish()?;
+                Ok(inspection)
+            }
         })
     }
 

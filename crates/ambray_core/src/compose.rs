@@ -2,7 +2,7 @@
 
 use std::f32::consts::FRAC_1_PI;
 
-use glam::{Vec3, Vec4};
+use glam::{Vec3, Vec4, Vec4Swizzles};
 
 use crate::settings::RadianceSource;
 
@@ -16,6 +16,12 @@ pub fn near_radiance(source: RadianceSource, ambient: Vec3, openness: f32, near:
         RadianceSource::SelfSimilar => near * ambient * self_similar_factor(openness, near),
         _ => near,
     }
+}
+
+/// Openness (x) and the sum of the gather (yzw) with the near-field radiance in its place (see [`near_radiance`]).
+#[must_use]
+pub fn finished(source: RadianceSource, ambient: Vec3, sum: Vec4) -> Vec4 {
+    near_radiance(source, ambient, sum.x, sum.yzw()).extend(sum.x).wxyz()
 }
 
 /// F = O / (1 − ã (1 − O)) in `[0, 1]`, given `near` = ã (1 − O). Nothing glows where nothing is open.

@@ -3,9 +3,13 @@
 //! O'(p) = Σ k A(p,q) O(q) / Σ k A(p,q). On a locally constant signal the pattern vanishes exactly, because every
 //! window holds each of the 16 classes with the same total weight.
 
+mod verdict;
+
 use glam::{Vec3, Vec4};
 
 use crate::settings::{FilterTest, Settings, Window};
+
+pub use verdict::{Refusal, Verdict};
 
 /// What the filter knows about a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,6 +45,9 @@ pub struct Filter {
     cos_normal: f32,
 }
 
+/// Pixels that the window reaches to each side, at most.
+pub(crate) const REACH: u32 = 2;
+
 /// Offsets along one axis with their weights: none, four taps from -1, or five whose outer ones count half.
 const OFF: &[(i32, f32)] = &[(0, 1.0)];
 const BOX: &[(i32, f32)] = &[(-1, 1.0), (0, 1.0), (1, 1.0), (2, 1.0)];
@@ -66,16 +73,77 @@ impl Filter {
         [self.tolerance, self.cos_normal]
     }
 
-    /// Acceptance A(p, q) of pixel `q` by pixel `p`, both surfaces: close to its tangent plane or depth, and facing alike.
+    /// Acceptance A(p, q) of pixel `q` by the surface at pixel `p`: a surface, close to its tangent plane or depth, and
+    /// facing alike.
+    #[inline]
     #[must_use]
     pub fn accepts(&self, p: &Guide, q: &Guide) -> bool {
-        let near = match self.test {
-            FilterTest::Plane => p.normal.dot(q.position - p.position).abs() < self.tolerance * p.footprint,
-            FilterTest::Absolute => (q.depth - p.depth).abs() < self.tolerance,
-            FilterTest::Relative => (q.depth - p.depth).abs() < self.tolerance * p.depth,
-            FilterTest::None => true,
+        // The numbers of a refusal are computed only where somebody reads them: here the compiler drops them.
+        self.judge(p, q).is_accepted()
+    }
+
+    /// [`accepts`](Self::accepts), with the reason.
+    #[inline]
+    #[must_use]
+    pub fn judge(&self, p: &Guide, q: &Guide) -> Verdict {
+        if !q.is_surface() {
+            return Verdict::Refused(Refusal::NoSurface);
+        }
+        let (distance, limit) = match self.test {
+            FilterTest::Plane => (p.normal.dot(q.position - p.position).abs(), self.tolerance * p.footprint),
+            FilterTest::Absolute => ((q.depth - p.depth).abs(), self.tolerance),
+            FilterTest::Relative => ((q.depth - p.depth).abs(), self.tolerance * p.depth),
+            FilterTest::None => (0.0, f32::INFINITY),
         };
-        near && (self.cos_normal <= -1.0 || p.normal.dot(q.normal) > self.cos_normal)
+        let near = distance < limit;
+        if !near {
+            return Verdict::Refused(self.too_far(p, distance));
+        }
+        let cosine = p.normal.dot(q.normal);
+        if self.cos_normal <= -1.0 || cosine > self.cos_normal {
+            Verdict::Accepted
+        } else {
+            Verdict::Refused(Refusal::Normal { cosine, required: self.cos_normal })
+        }
+    }
+
+    /// The refusal of a pixel at `distance` from `p`, in scene units, in the unit of the test.
+    fn too_far(&self, p: &Guide, distance: f32) -> Refusal {
+        let allowed = self.tolerance;
+        match self.test {
+            FilterTest::Plane => Refusal::Plane { footprints: distance / p.footprint, allowed },
+            FilterTest::Relative => Refusal::Relative { share: distance / p.depth, allowed },
+            FilterTest::Absolute | FilterTest::None => Refusal::Absolute { difference: distance, allowed },
+        }
+    }
+
+    /// Every tap of the window around pixel (x, y), which sees a surface: offset to the right and down, weight k in the
+    /// window, and what the filter makes of it. The centre is always accepted.
+    #[must_use]
+    pub fn taps(
+        &self,
+        guides: &[Guide],
+        width: usize,
+        (x, y): (usize, usize),
+    ) -> Vec<([i32; 2], f32, Verdict)> {
+        let (p, height) = (y * width + x, guides.len() / width);
+        let judge = |dx, dy| match (shifted(x, dx, width), shifted(y, dy, height)) {
+            (Some(column), Some(row)) if row * width + column == p => Verdict::Accepted,
+            (Some(column), Some(row)) => self.judge(&guides[p], &guides[row * width + column]),
+            _ => Verdict::Refused(Refusal::OutsidePicture),
+        };
+        let rows = self.axis().iter();
+        rows.flat_map(|&(dy, ky)| self.axis().iter().map(move |&(dx, kx)| ([dx, dy], kx * ky, judge(dx, dy))))
+            .collect()
+    }
+
+    /// Offsets along one axis with their weights.
+    const fn axis(&self) -> &'static [(i32, f32)] {
+        match self.window {
+            Window::Off => OFF,
+            Window::Box => BOX,
+            Window::Centred => CENTRED,
+        }
     }
 
     /// Filters row `y` of a picture of `width` pixels a row: writes the row of each plane of `inputs` to `outputs`.
@@ -110,24 +178,16 @@ impl Filter {
         if !guide.is_surface() {
             return inputs.map(|input| input[p]);
         }
-        let taps = match self.window {
-            Window::Off => OFF,
-            Window::Box => BOX,
-            Window::Centred => CENTRED,
-        };
-        let height = guides.len() / width;
-        let inside = |at: usize, offset: i32, end: usize| {
-            at.checked_add_signed(offset as isize).filter(|&shifted| shifted < end)
-        };
+        let (taps, height) = (self.axis(), guides.len() / width);
         let mut sums = [Vec4::ZERO; PLANES];
         let mut weight = 0.0;
         for &(dy, ky) in taps {
-            let Some(row) = inside(y, dy, height) else { continue };
+            let Some(row) = shifted(y, dy, height) else { continue };
             for &(dx, kx) in taps {
-                let Some(column) = inside(x, dx, width) else { continue };
+                let Some(column) = shifted(x, dx, width) else { continue };
                 let q = row * width + column;
                 // The centre is always accepted, so the weight is never zero.
-                if q == p || (guides[q].is_surface() && self.accepts(guide, &guides[q])) {
+                if q == p || self.accepts(guide, &guides[q]) {
                     let k = kx * ky;
                     weight += k;
                     for (sum, input) in sums.iter_mut().zip(inputs) {
@@ -138,4 +198,9 @@ impl Filter {
         }
         sums.map(|sum| sum / weight)
     }
+}
+
+/// `at` moved by `offset`, if that is below `end`.
+fn shifted(at: usize, offset: i32, end: usize) -> Option<usize> {
+    at.checked_add_signed(offset as isize).filter(|&shifted| shifted < end)
 }

@@ -5,7 +5,10 @@ use std::time::Duration;
 use glam::{Vec2, Vec3, Vec4};
 use serde::Serialize;
 
-use crate::{aov::Aov, view::View};
+use crate::{
+    aov::Aov, camera::Camera, direct::Receiver, filter::Guide, gather::ShadedPoint, sampling::PixelKey,
+    view::View,
+};
 
 /// What pass 1 saw at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,6 +64,41 @@ impl GBufferPixel {
     #[must_use]
     pub const fn is_surface(&self) -> bool {
         self.instance != u32::MAX
+    }
+
+    /// What the filter knows about the pixel, seen by `camera`.
+    #[must_use]
+    pub fn guide(&self, camera: &Camera) -> Guide {
+        if !self.is_surface() {
+            return Guide::NOTHING;
+        }
+        let (position, normal) = (self.position, self.smooth_normal);
+        Guide { position, depth: self.depth, normal, footprint: camera.footprint(self.depth) }
+    }
+
+    /// The surface as the gather sees it, with the samples of `key`.
+    #[must_use]
+    pub const fn shaded_point(&self, key: PixelKey) -> ShadedPoint {
+        ShadedPoint {
+            position: self.position,
+            geometric_normal: self.geometric_normal,
+            reach: self.reach,
+            normal: self.shading_normal,
+            instance: self.instance,
+            key,
+        }
+    }
+
+    /// The surface as lights see it. Its shadow rays take the seed of a ray of `key` that no batch has.
+    #[must_use]
+    pub const fn receiver(&self, key: PixelKey) -> Receiver {
+        Receiver {
+            position: self.position,
+            geometric_normal: self.geometric_normal,
+            normal: self.shading_normal,
+            reach: self.reach,
+            seed: key.ray_seed(u32::MAX),
+        }
     }
 }
 

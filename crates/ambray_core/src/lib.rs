@@ -28,6 +28,7 @@ pub mod display;
 pub mod filter;
 pub mod frame;
 pub mod gather;
+pub mod inspect;
 pub mod light;
 pub mod offset;
 pub mod openness;

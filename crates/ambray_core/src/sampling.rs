@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 
 use glam::{Vec2, Vec3};
 
-use crate::settings::{Sampling, Sequence};
+use crate::settings::{Sampling, Sequence, Settings};
 
 /// Number of sample classes: one for each pixel of a 4 × 4 block.
 pub const CLASS_COUNT: u32 = 16;
@@ -176,6 +176,12 @@ impl SampleSets {
             .map(|i| SampleDirection::from_bits(sequence_point(sequence, first.wrapping_add(i), seeds)))
             .collect();
         Self { sampling, sequence, spp, table }
+    }
+
+    /// The sets that `settings` ask for.
+    #[must_use]
+    pub fn of(settings: &Settings) -> Self {
+        Self::new(settings.sampling, settings.sequence, settings.spp, settings.frame, settings.seed)
     }
 
     /// The same given points of the unit square for every pixel.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use ambray_core::trace::{Hit, Ray, alpha_threshold};
+use ambray_core::trace::{Diffuse, Hit, Ray, alpha_threshold};
 use glam::{Affine3A, Mat3A, Vec2, Vec3, Vec3A, Vec4};
 
 use crate::implicit::{ShapeFrame, ShapePoint};
@@ -90,6 +90,13 @@ impl DiffusePoint {
     #[must_use]
     pub fn facing(self, direction: Vec3) -> Self {
         Self { geometric_normal: towards(self.geometric_normal, -direction), ..self }
+    }
+}
+
+impl From<DiffusePoint> for Diffuse {
+    fn from(point: DiffusePoint) -> Self {
+        let DiffusePoint { position, geometric_normal, reach, albedo } = point;
+        Self { position, geometric_normal, reach, albedo }
     }
 }
 

@@ -95,14 +95,7 @@ impl SampleTables {
             Sampling::Same => 1,
             Sampling::Random | Sampling::Independent => 0,
         };
-        let sets = SampleSets::new(
-            settings.sampling,
-            settings.sequence,
-            settings.spp,
-            settings.frame,
-            settings.seed,
-        );
-        Self::of_sets(&sets, classes)
+        Self::of_sets(&SampleSets::of(settings), classes)
     }
 
     /// Tables of the first `classes` of `sets`.

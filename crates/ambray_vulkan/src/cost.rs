@@ -2,12 +2,9 @@
 
 use ambray_core::settings::Settings;
 
-use crate::{
-    layout::is_after_filter,
-    planes::Plane::{
-        self, Albedo, Ambient, Beauty, Bent, Direct, Emission, Filtered, FilteredBent, Geometric, Positions,
-        Second, Shading, SmoothNormals, Tallies,
-    },
+use crate::planes::Plane::{
+    self, Albedo, Ambient, Beauty, Bent, Direct, Emission, Filtered, FilteredBent, Geometric, Positions,
+    Second, Shading, SmoothNormals, Tallies,
 };
 
 /// Bytes that a pass reads and writes at least for a pixel that sees a surface: every plane it touches, once and as whole
@@ -34,7 +31,7 @@ impl PassBytes {
 /// Of each pass of a frame with `settings`, in the order in which they run.
 #[must_use]
 pub fn bytes_per_pixel(settings: &Settings) -> [PassBytes; 4] {
-    let is_after_filter = is_after_filter(settings);
+    let is_after_filter = settings.takes_minimum_after_filter();
     PASSES.map(|Pass { name, reads, writes }| {
         let bytes = |planes: &[Plane]| -> u64 {
             let used = planes.iter().filter(|&&plane| name != FILTER || plane != Second || is_after_filter);

@@ -17,7 +17,6 @@ pub use scene::{
     TextureUse,
 };
 pub use specialization::Specialization;
-pub(crate) use specialization::is_after_filter;
 pub use view::{
     FilterConstants, GatherConstants, MeanPlanes, Push, Ray, RayHit, Tally, TemporalConstants, View,
 };

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use ambray_core::{
-    compose::{near_radiance, smaller_batch},
+    compose::{finished, smaller_batch},
     frame::{Frame, FrameStats, GBufferPixel, RayCounts},
     settings::Settings,
     view::View,
@@ -14,7 +14,7 @@ use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 use crate::{
     Buffer, Context, Location, Result,
     history::History,
-    layout::{NONE, Tally, is_after_filter},
+    layout::{NONE, Tally},
     planes::{Plane, Transfer},
     state::State,
 };
@@ -52,13 +52,12 @@ pub(crate) fn frame(
     reader.each(Plane::Direct, &mut gbuffer, |pixel, v| pixel.direct = v.xyz())?;
 
     let mut ambient_raw = reader.vectors(Plane::Ambient)?;
-    if is_after_filter(settings) {
+    if settings.takes_minimum_after_filter() {
         let second = reader.vectors(Plane::Second)?;
         ambient_raw.iter_mut().zip(second).for_each(|(raw, second)| *raw = smaller_batch(*raw, second));
     }
     for raw in &mut ambient_raw {
-        let near = near_radiance(settings.radiance_source, view.ambient, raw.x, raw.yzw());
-        *raw = near.extend(raw.x).wxyz();
+        *raw = finished(settings.radiance_source, view.ambient, *raw);
     }
     let history = match state.history() {
         Some(kept) => {

@@ -23,10 +23,10 @@ fn may_change(world: &impl World, receiver: u32, occluder: u32) -> bool {
 pub(super) struct FirstBatch {
     /// N samples of each point, point after point.
     samples: Vec<Sample>,
-    rays: Vec<Ray>,
-    hits: Vec<Hit>,
+    pub(super) rays: Vec<Ray>,
+    pub(super) hits: Vec<Hit>,
     /// Sample that each ray belongs to.
-    slots: Vec<u32>,
+    pub(super) slots: Vec<u32>,
     /// Basis and ray origin of each point of a run.
     starts: Vec<(Basis, Vec3)>,
 }

@@ -6,18 +6,20 @@
 mod first;
 mod radiance;
 mod thin;
+mod witness;
 
 use std::f32::consts::PI;
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec3, Vec4, Vec4Swizzles};
 
 use crate::{
     light::Light,
     offset::RayOffset,
     openness::Openness,
     sampling::{PixelKey, SampleSets},
-    settings::{NearRadiance, RadianceSource, Thin},
+    settings::{NearRadiance, RadianceSource, Settings, Temporal, Thin},
     trace::World,
+    view::View,
 };
 
 use first::FirstBatch;
@@ -106,6 +108,20 @@ pub struct Gathered {
     pub chord_hits: u32,
     /// Shadow rays for the radiance of hits.
     pub shadow_rays: u32,
+}
+
+impl Gathered {
+    /// Openness (x) and near radiance (yzw) as the filter takes them: of both batches if the minimum is taken
+    /// `after_filter`, else of the smaller one.
+    #[must_use]
+    pub fn before_filter(&self, after_filter: bool) -> (Vec4, Option<Vec4>) {
+        let join = |openness: f32, near: Vec3| near.extend(openness).wxyz();
+        if after_filter {
+            (join(self.first, self.near_first), Some(join(self.second, self.near_second)))
+        } else {
+            (join(self.openness, self.near), None)
+        }
+    }
 }
 
 /// One ray of the first batch, after tracing.
@@ -218,7 +234,26 @@ fn combine(params: &GatherParams<'_>, samples: &[Sample], second: &SecondBatch, 
     gathered.changing = (changing / count) as f32;
 }
 
-impl GatherParams<'_> {
+impl<'a> GatherParams<'a> {
+    /// What `settings` and `view` ask for, with their `samples`.
+    #[must_use]
+    pub fn new(settings: &Settings, view: &'a View, samples: &'a SampleSets) -> Self {
+        Self {
+            openness: view.openness,
+            radius: view.radius,
+            near_radiance: settings.near_radiance,
+            near_limit: view.near_limit,
+            source: settings.radiance_source,
+            thin: settings.thin,
+            thin_edge: settings.thin_edge,
+            ambient: view.ambient,
+            lights: &view.lights,
+            offset: view.offset,
+            samples,
+            temporal: settings.temporal == Temporal::On,
+        }
+    }
+
     /// Whether hits need their radiance.
     fn needs_radiance(&self) -> bool {
         self.near_radiance != NearRadiance::Off

@@ -12,6 +12,12 @@ use crate::{
 
 use super::GatherParams;
 
+/// Seed of the shadow rays from the hit of `ray`. No two rays of a point share it: hashes of 32 bits to 32 bits are
+/// permutations.
+pub(super) const fn shadow_seed(ray: &Ray) -> u32 {
+    pcg(ray.seed)
+}
+
 /// A batch of hits whose radiance is wanted. Each carries a tag of the caller's.
 #[derive(Debug, Default)]
 pub(super) struct RadianceScratch {
@@ -37,7 +43,7 @@ impl RadianceScratch {
             geometric_normal: surface.geometric_normal,
             normal: surface.geometric_normal,
             reach: surface.reach,
-            seed: pcg(ray.seed),
+            seed: shadow_seed(ray),
         });
         self.albedo.push(surface.albedo);
         self.tags.push(tag);

@@ -30,12 +30,14 @@ impl SecondBatch {
 
 /// A chord between two missed rays of a point.
 #[derive(Clone, Copy, Debug)]
-struct Chord {
+pub(super) struct Chord {
     point: u32,
+    /// The samples whose ends it joins; there are at most 65536.
+    pub(super) joins: [u16; 2],
     /// Length, scene units.
-    length: f32,
+    pub(super) length: f32,
     /// Degree in [0, 1] to which the chord is blocked.
-    blocked: f32,
+    pub(super) blocked: f32,
     /// Weight of its hit in the mean radiance.
     weight: f32,
 }
@@ -43,9 +45,9 @@ struct Chord {
 /// The chords of a batch of points.
 #[derive(Debug, Default)]
 pub(super) struct Chords {
-    chords: Vec<Chord>,
-    rays: Vec<Ray>,
-    hits: Vec<Hit>,
+    pub(super) chords: Vec<Chord>,
+    pub(super) rays: Vec<Ray>,
+    pub(super) hits: Vec<Hit>,
     blocked: Vec<bool>,
     /// Missed rays of each point of a run, each list ended by the next one's start.
     missed: Vec<u32>,
@@ -79,8 +81,7 @@ impl Chords {
     ) {
         self.make_rays(params, points, samples);
         radiance.clear();
-        if params.thin == Thin::Paper && !params.needs_radiance() {
-            // Visibility alone: any hit will do.
+        if any_hit_will_do(params) {
             self.blocked.clear();
             self.blocked.resize(self.rays.len(), false);
             world.any_hits(&self.rays, &mut self.blocked);
@@ -175,17 +176,16 @@ impl Chords {
                 for (i, point) in run.iter().enumerate() {
                     let missed = &self.missed[self.starts[i]..self.starts[i + 1]];
                     let Some(partner) = partner(missed.len()) else { continue };
-                    let ends = [missed[q], missed[partner]].map(|j| {
-                        let direction = samples[(first + i) * spp + j as usize].direction;
-                        point.position + direction * end_length(params)
-                    });
+                    let joins = [missed[q], missed[partner]];
+                    let ends = joins.map(|j| end(params, point, &samples[(first + i) * spp + j as usize]));
                     let length = ends[0].distance(ends[1]);
                     if length > 0.0 {
                         let direction = (ends[1] - ends[0]) / length;
                         let seed = point.key.ray_seed((spp + q * spp + partner) as u32);
                         self.rays.push(Ray { origin: ends[0], t_max: CHORD_END * length, direction, seed });
                         let point = (first + i) as u32;
-                        self.chords.push(Chord { point, length, blocked: 0.0, weight: 0.0 });
+                        let joins = joins.map(|j| j as u16);
+                        self.chords.push(Chord { point, joins, length, blocked: 0.0, weight: 0.0 });
                     }
                 }
             };
@@ -223,6 +223,16 @@ impl Chords {
             self.starts.push(self.missed.len());
         }
     }
+}
+
+/// Whether the visibility of chords is all that is asked for: any hit will do.
+pub(super) fn any_hit_will_do(params: &GatherParams<'_>) -> bool {
+    params.thin == Thin::Paper && !params.needs_radiance()
+}
+
+/// End of the missed ray of `sample` at `point`, which chords join.
+pub(super) fn end(params: &GatherParams<'_>, point: &ShadedPoint, sample: &Sample) -> Vec3 {
+    point.position + sample.direction * end_length(params)
 }
 
 /// Distance of the end points of missed rays: R (paper), R/2 (sheet: low sheets are found too).

@@ -21,3 +21,11 @@ pub use field::{Field, Kind, SetError, Value};
 pub use table::{Settings, SettingsPatch};
 pub use validate::SettingsError;
 pub use values::{Auto, Range, Rgb, Size, Triple, ValueError};
+
+impl Settings {
+    /// Whether there is a second batch, and the minimum of both is taken after the filter.
+    #[must_use]
+    pub fn takes_minimum_after_filter(&self) -> bool {
+        self.thin != Thin::Off && self.thin_minimum == ThinMinimum::AfterFilter
+    }
+}

@@ -96,8 +96,8 @@ impl CpuBackend {
     ) -> Result<Frame, BackendError> {
         let start = Instant::now();
         let pool = self.pool(control.threads)?;
-        let samples = sample_sets(settings);
-        let params = gather_params(settings, view, &samples);
+        let samples = SampleSets::of(settings);
+        let params = GatherParams::new(settings, view, &samples);
         let earlier = self.history().take().filter(|earlier| earlier.suits(settings, view));
         let scene_moved = !self.rendered.swap(true, Ordering::Relaxed);
         let accumulation = (settings.temporal == Temporal::On).then(|| Sequel {
@@ -145,8 +145,8 @@ impl CpuBackend {
         points: &[QueryPoint],
         control: Control<'_>,
     ) -> Result<Vec<QueryResult>, BackendError> {
-        let samples = sample_sets(settings);
-        let params = gather_params(settings, view, &samples);
+        let samples = SampleSets::of(settings);
+        let params = GatherParams::new(settings, view, &samples);
         let pool = self.pool(control.threads)?;
         Ok(pool.install(|| points::run(&self.world, settings, view, &params, points, control))?)
     }
@@ -163,26 +163,5 @@ impl CpuBackend {
         let pool = Arc::new(ThreadPoolBuilder::new().num_threads(threads).build()?);
         *slot = Some((threads, Arc::clone(&pool)));
         Ok(pool)
-    }
-}
-
-fn sample_sets(settings: &Settings) -> SampleSets {
-    SampleSets::new(settings.sampling, settings.sequence, settings.spp, settings.frame, settings.seed)
-}
-
-fn gather_params<'a>(settings: &Settings, view: &'a View, samples: &'a SampleSets) -> GatherParams<'a> {
-    GatherParams {
-        openness: view.openness,
-        radius: view.radius,
-        near_radiance: settings.near_radiance,
-        near_limit: view.near_limit,
-        source: settings.radiance_source,
-        thin: settings.thin,
-        thin_edge: settings.thin_edge,
-        ambient: view.ambient,
-        lights: &view.lights,
-        offset: view.offset,
-        samples,
-        temporal: settings.temporal == Temporal::On,
     }
 }

@@ -13,11 +13,11 @@ use ambray_core::{
     frame::{GBufferPixel, RayCounts},
     gather::{GatherParams, GatherScratch, Gathered, ShadedPoint, gather},
     sampling::PixelKey,
-    settings::{Normals, Settings, Thin, ThinMinimum},
+    settings::{Normals, Settings},
     trace::{Hit, Ray, Trace},
     view::View,
 };
-use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
+use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
 use super::{
@@ -93,7 +93,7 @@ pub(super) fn run(
     let start = Instant::now();
     let (width, height) = view.camera.size();
     let pixels = width as usize * height as usize;
-    let after_filter = settings.thin != Thin::Off && settings.thin_minimum == ThinMinimum::AfterFilter;
+    let after_filter = settings.takes_minimum_after_filter();
     let mut pass = Pass1 {
         gbuffer: vec![GBufferPixel::NOTHING; pixels],
         guides: vec![Guide::NOTHING; pixels],
@@ -217,24 +217,16 @@ impl Job<'_> {
             rays: 1,
             motion: Vec2::ZERO,
         };
-        let footprint = camera.footprint(depth);
-        (pixel, Guide { position: point.position, depth, normal: smooth_normal, footprint })
+        (pixel, pixel.guide(camera))
     }
 
     /// Direct light; returns the shadow rays traced.
     fn direct(&self, scratch: &mut Scratch, band: &mut Band<'_>) -> u64 {
         let (frame, seed) = (self.settings.frame, self.settings.seed);
         scratch.receivers.clear();
-        scratch.receivers.extend(scratch.seen.iter().map(|&(i, x, y)| {
-            let pixel = &band.gbuffer[i];
-            Receiver {
-                position: pixel.position,
-                geometric_normal: pixel.geometric_normal,
-                reach: pixel.reach,
-                normal: pixel.shading_normal,
-                seed: PixelKey::new(x, y, frame, seed).ray_seed(u32::MAX),
-            }
-        }));
+        let receiver =
+            |&(i, x, y): &(usize, u32, u32)| band.gbuffer[i].receiver(PixelKey::new(x, y, frame, seed));
+        scratch.receivers.extend(scratch.seen.iter().map(receiver));
         scratch.received.clear();
         scratch.received.resize(scratch.receivers.len(), Received::default());
         let lighting = DirectLighting { lights: &self.view.lights, offset: self.view.offset, shadows: true };
@@ -254,27 +246,18 @@ impl Job<'_> {
         // Class by class, so that the rays of a run share their directions on flat surfaces.
         scratch.seen.sort_by_key(|&(i, x, y)| (ambray_core::sampling::sample_class(x, y), i));
         scratch.points.clear();
-        scratch.points.extend(scratch.seen.iter().map(|&(i, x, y)| {
-            let pixel = &band.gbuffer[i];
-            ShadedPoint {
-                position: pixel.position,
-                geometric_normal: pixel.geometric_normal,
-                reach: pixel.reach,
-                normal: pixel.shading_normal,
-                instance: pixel.instance,
-                key: PixelKey::new(x, y, frame, seed),
-            }
-        }));
+        let point =
+            |&(i, x, y): &(usize, u32, u32)| band.gbuffer[i].shaded_point(PixelKey::new(x, y, frame, seed));
+        scratch.points.extend(scratch.seen.iter().map(point));
         scratch.gathered.clear();
         scratch.gathered.resize(scratch.points.len(), Gathered::default());
         gather(self.world, self.params, &scratch.points, &mut scratch.gather, &mut scratch.gathered);
 
         for (&(i, ..), gathered) in scratch.seen.iter().zip(&scratch.gathered) {
-            if band.second.is_empty() {
-                band.ambient[i] = gathered.near.extend(gathered.openness).wxyz();
-            } else {
-                band.ambient[i] = gathered.near_first.extend(gathered.first).wxyz();
-                band.second[i] = gathered.near_second.extend(gathered.second).wxyz();
+            let (ambient, second) = gathered.before_filter(!band.second.is_empty());
+            band.ambient[i] = ambient;
+            if let Some(second) = second {
+                band.second[i] = second;
             }
             band.bent[i] = gathered.bent.extend(gathered.changing);
             band.gbuffer[i].rays += gathered.ambient_rays + gathered.chord_rays + gathered.shadow_rays;

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use ambray_core::{
-    compose::{compose, near_radiance, smaller_batch},
+    compose::{compose, finished, smaller_batch},
     control::{Cancelled, Control},
     filter::Filter,
     settings::{RadianceSource, Settings},
@@ -49,8 +49,7 @@ pub(super) fn run(
     let width = view.camera.size().0 as usize;
     let pixels = pass1.gbuffer.len();
     let filter = Filter::from(settings);
-    let finish =
-        |v: Vec4| near_radiance(settings.radiance_source, view.ambient, v.x, v.yzw()).extend(v.x).wxyz();
+    let finish = |v: Vec4| finished(settings.radiance_source, view.ambient, v);
 
     let mut beauty = vec![Vec3::ZERO; pixels];
     let mut ambient = vec![Vec4::ZERO; pixels];

@@ -4,10 +4,7 @@ use std::sync::Arc;
 
 use ambray_core::frame::PoseStats;
 use ambray_core::trace::{Diffuse, Hit, Motion, Ray, Trace, World};
-use ambray_scene::{
-    Scene,
-    surface::{DiffusePoint, Surfaces},
-};
+use ambray_scene::{Scene, surface::Surfaces};
 
 use crate::{BuildOptions, Tracer};
 
@@ -59,8 +56,6 @@ impl World for CpuWorld {
     }
 
     fn diffuse_at(&self, ray: &Ray, hit: &Hit, width: f32) -> Diffuse {
-        let point = self.surfaces.diffuse_at(ray, hit, width).facing(ray.direction);
-        let DiffusePoint { position, geometric_normal, reach, albedo } = point;
-        Diffuse { position, geometric_normal, reach, albedo }
+        self.surfaces.diffuse_at(ray, hit, width).facing(ray.direction).into()
     }
 }

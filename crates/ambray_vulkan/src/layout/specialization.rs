@@ -1,6 +1,6 @@
 //! Specialisation constants: one shader for all settings, compiled for those in use.
 
-use ambray_core::settings::{Settings, Temporal, Thin, ThinMinimum};
+use ambray_core::settings::{Settings, Temporal};
 
 macro_rules! specialization {
     ($( $(#[$meta:meta])* $name:ident $constant:ident = $default:literal, )*) => {
@@ -70,7 +70,7 @@ impl Specialization {
             source: settings.radiance_source as u32,
             thin: settings.thin as u32,
             thin_edge: settings.thin_edge.into(),
-            after_filter: is_after_filter(settings).into(),
+            after_filter: settings.takes_minimum_after_filter().into(),
             normals: settings.normals as u32,
             window: settings.filter as u32,
             test: settings.filter_test as u32,
@@ -79,9 +79,4 @@ impl Specialization {
             shapes: shapes.into(),
         }
     }
-}
-
-/// Whether the minimum of both batches is taken after the filter.
-pub(crate) fn is_after_filter(settings: &Settings) -> bool {
-    settings.thin != Thin::Off && settings.thin_minimum == ThinMinimum::AfterFilter
 }
