@@ -73,47 +73,53 @@ impl Filter {
         [self.tolerance, self.cos_normal]
     }
 
-    /// Acceptance A(p, q) of pixel `q` by the surface at pixel `p`: a surface, close to its tangent plane or depth, and
-    /// facing alike.
+    /// Acceptance A(p, q) of pixel `q` by pixel `p`, both surfaces: close to its tangent plane or depth, and facing alike.
     #[inline]
     #[must_use]
     pub fn accepts(&self, p: &Guide, q: &Guide) -> bool {
-        // The numbers of a refusal are computed only where somebody reads them: here the compiler drops them.
-        self.judge(p, q).is_accepted()
+        self.is_near(p, q) && self.faces_alike(p, q)
     }
 
-    /// [`accepts`](Self::accepts), with the reason.
-    #[inline]
+    /// What the filter makes of pixel `q` in the window of `p`, which is a surface: [`accepts`](Self::accepts) with the
+    /// reason.
     #[must_use]
     pub fn judge(&self, p: &Guide, q: &Guide) -> Verdict {
         if !q.is_surface() {
-            return Verdict::Refused(Refusal::NoSurface);
-        }
-        let (distance, limit) = match self.test {
-            FilterTest::Plane => (p.normal.dot(q.position - p.position).abs(), self.tolerance * p.footprint),
-            FilterTest::Absolute => ((q.depth - p.depth).abs(), self.tolerance),
-            FilterTest::Relative => ((q.depth - p.depth).abs(), self.tolerance * p.depth),
-            FilterTest::None => (0.0, f32::INFINITY),
-        };
-        let near = distance < limit;
-        if !near {
-            return Verdict::Refused(self.too_far(p, distance));
-        }
-        let cosine = p.normal.dot(q.normal);
-        if self.cos_normal <= -1.0 || cosine > self.cos_normal {
+            Verdict::Refused(Refusal::NoSurface)
+        } else if self.accepts(p, q) {
             Verdict::Accepted
+        } else if self.is_near(p, q) {
+            let (cosine, required) = (p.normal.dot(q.normal), self.cos_normal);
+            Verdict::Refused(Refusal::Normal { cosine, required })
         } else {
-            Verdict::Refused(Refusal::Normal { cosine, required: self.cos_normal })
+            Verdict::Refused(self.too_far(p, q))
         }
     }
 
-    /// The refusal of a pixel at `distance` from `p`, in scene units, in the unit of the test.
-    fn too_far(&self, p: &Guide, distance: f32) -> Refusal {
+    #[inline]
+    fn is_near(&self, p: &Guide, q: &Guide) -> bool {
+        match self.test {
+            FilterTest::Plane => plane_distance(p, q) < self.tolerance * p.footprint,
+            FilterTest::Absolute => depth_difference(p, q) < self.tolerance,
+            FilterTest::Relative => depth_difference(p, q) < self.tolerance * p.depth,
+            FilterTest::None => true,
+        }
+    }
+
+    #[inline]
+    fn faces_alike(&self, p: &Guide, q: &Guide) -> bool {
+        self.cos_normal <= -1.0 || p.normal.dot(q.normal) > self.cos_normal
+    }
+
+    /// The refusal of a pixel that is not near, in the unit of the test.
+    fn too_far(&self, p: &Guide, q: &Guide) -> Refusal {
         let allowed = self.tolerance;
         match self.test {
-            FilterTest::Plane => Refusal::Plane { footprints: distance / p.footprint, allowed },
-            FilterTest::Relative => Refusal::Relative { share: distance / p.depth, allowed },
-            FilterTest::Absolute | FilterTest::None => Refusal::Absolute { difference: distance, allowed },
+            FilterTest::Plane => Refusal::Plane { footprints: plane_distance(p, q) / p.footprint, allowed },
+            FilterTest::Relative => Refusal::Relative { share: depth_difference(p, q) / p.depth, allowed },
+            FilterTest::Absolute | FilterTest::None => {
+                Refusal::Absolute { difference: depth_difference(p, q), allowed }
+            }
         }
     }
 
@@ -138,6 +144,7 @@ impl Filter {
     }
 
     /// Offsets along one axis with their weights.
+    #[inline]
     const fn axis(&self) -> &'static [(i32, f32)] {
         match self.window {
             Window::Off => OFF,
@@ -187,7 +194,7 @@ impl Filter {
                 let Some(column) = shifted(x, dx, width) else { continue };
                 let q = row * width + column;
                 // The centre is always accepted, so the weight is never zero.
-                if q == p || self.accepts(guide, &guides[q]) {
+                if q == p || (guides[q].is_surface() && self.accepts(guide, &guides[q])) {
                     let k = kx * ky;
                     weight += k;
                     for (sum, input) in sums.iter_mut().zip(inputs) {
@@ -200,7 +207,20 @@ impl Filter {
     }
 }
 
+/// Distance of `q` from the tangent plane of `p`, scene units.
+#[inline]
+fn plane_distance(p: &Guide, q: &Guide) -> f32 {
+    p.normal.dot(q.position - p.position).abs()
+}
+
+/// Difference of their depths, scene units.
+#[inline]
+fn depth_difference(p: &Guide, q: &Guide) -> f32 {
+    (q.depth - p.depth).abs()
+}
+
 /// `at` moved by `offset`, if that is below `end`.
+#[inline]
 fn shifted(at: usize, offset: i32, end: usize) -> Option<usize> {
     at.checked_add_signed(offset as isize).filter(|&shifted| shifted < end)
 }

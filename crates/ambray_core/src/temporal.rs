@@ -105,7 +105,8 @@ impl Accumulation {
         let is_still = !self.camera_moved && path.then == path.now;
         let kept = if is_still {
             // No resampling, so nothing is lost.
-            let is_same = self.filter.accepts(path.then, &earlier.guides[pixel]);
+            let is_same =
+                earlier.guides[pixel].is_surface() && self.filter.accepts(path.then, &earlier.guides[pixel]);
             if is_same { earlier.means[pixel] } else { Mean::default() }
         } else {
             self.resample(path, earlier)
@@ -135,7 +136,7 @@ impl Accumulation {
                 continue;
             }
             let q = y as usize * width as usize + x as usize;
-            if self.filter.accepts(path.then, &earlier.guides[q]) {
+            if earlier.guides[q].is_surface() && self.filter.accepts(path.then, &earlier.guides[q]) {
                 let k = (if dx > 0.0 { share.x } else { 1.0 - share.x })
                     * (if dy > 0.0 { share.y } else { 1.0 - share.y });
                 let mean = &earlier.means[q];
