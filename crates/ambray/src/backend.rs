@@ -3,13 +3,14 @@
 use std::{
     str::FromStr,
     sync::{Arc, Mutex, OnceLock, PoisonError},
+    time::Duration,
 };
 
 use ambray_core::{control::Control, frame::PoseStats};
 use ambray_cpu::{BuildOptions, CpuBackend};
 use ambray_scene::{Scene, animation::Pose, surface::Surfaces};
 use ambray_vulkan::{
-    AccelerationOptions, Context, DeviceOptions, TraceMode, VulkanBackend, VulkanError, VulkanOptions,
+    AccelerationOptions, Context, Device, DeviceOptions, TraceMode, VulkanBackend, VulkanError, VulkanOptions,
 };
 
 use crate::RenderError;
@@ -46,12 +47,18 @@ pub struct RendererOptions {
     pub backend: BackendChoice,
     /// Trees of the CPU backend.
     pub build: BuildOptions,
-    /// Which Vulkan device.
+    /// Which Vulkan device, unless one is [shared](Self::shared).
     pub device: DeviceOptions,
+    /// A Vulkan device that is open already, which other renderers may be using, also in other threads. With
+    /// [`BackendChoice::Cpu`] it is left alone.
+    pub shared: Option<Device>,
     /// How it traces rays.
     pub trace: TraceMode,
     /// Its acceleration structures.
     pub acceleration: AccelerationOptions,
+    /// How long a frame may keep the device from other work at a time, such as the drawing of a window; `None` is a tenth of a
+    /// second, a whole one where the device is the processor.
+    pub submission: Option<Duration>,
 }
 
 /// The backends of a renderer. The CPU backend is made when it is first needed.
@@ -249,9 +256,14 @@ fn vulkan(
     options: &RendererOptions,
     control: &Control<'_>,
 ) -> Result<VulkanBackend, VulkanError> {
-    // A device that is really the processor is slower than the CPU backend, but better than an error.
-    let software = options.device.software || options.backend == BackendChoice::Vulkan;
-    let context = Context::new(&DeviceOptions { software, ..options.device.clone() })?;
-    let options = VulkanOptions { trace: options.trace, acceleration: options.acceleration };
-    VulkanBackend::new(&context, scene, options, control)
+    let device = match &options.shared {
+        Some(device) => device.clone(),
+        None => {
+            // A device that is really the processor is slower than the CPU backend, but better than an error.
+            let software = options.device.software || options.backend == BackendChoice::Vulkan;
+            Device::of(Context::new(&DeviceOptions { software, ..options.device.clone() })?)
+        }
+    };
+    let RendererOptions { trace, acceleration, submission, .. } = *options;
+    VulkanBackend::on(&device, scene, VulkanOptions { trace, acceleration, submission }, control)
 }

@@ -40,6 +40,7 @@ pub use ambray_core::{
 pub use ambray_cpu::{BuildOptions, Isa, Quality, Width};
 pub use ambray_scene as scene;
 pub use ambray_vulkan as vulkan;
+pub use ambray_vulkan::Device;
 pub use backend::{BackendChoice, RendererOptions};
 pub use renderer::{BuildStats, Machine, RenderError, Renderer};
 

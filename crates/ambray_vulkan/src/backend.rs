@@ -16,11 +16,11 @@ use ambray_core::{
 use ambray_scene::{Scene, animation::Pose, surface::Surfaces};
 
 use crate::{
-    Acceleration, AccelerationOptions, AccelerationStats, Context, Culling, DeviceKind, Result, TraceMode,
-    VulkanError,
+    Acceleration, AccelerationOptions, AccelerationStats, Context, Culling, Device, DeviceKind, Result,
+    TraceMode, VulkanError,
     layout::{Push, Specialization},
     motion::{Motion, Move},
-    pipeline::{ProgramCache, TracePass},
+    pipeline::TracePass,
     points, rays, readback,
     schedule::{Pass, Step, StepWork, cost_of, submissions},
     state::{Inputs, State},
@@ -42,6 +42,10 @@ pub struct VulkanOptions {
     pub trace: TraceMode,
     /// How acceleration structures are built.
     pub acceleration: AccelerationOptions,
+    /// How long a submission of a frame should take at most; `None` is a tenth of a second, a whole one where the device is
+    /// the processor. Shorter ones let other work on the device, such as the drawing of a window, come in between; each costs
+    /// a little more.
+    pub submission: Option<Duration>,
 }
 
 /// A scene made ready for rendering on a device.
@@ -56,7 +60,7 @@ pub struct VulkanBackend {
     context: Arc<Context>,
     mode: TraceMode,
     options: VulkanOptions,
-    programs: Arc<ProgramCache>,
+    device: Device,
 }
 
 impl VulkanBackend {
@@ -70,7 +74,7 @@ impl VulkanBackend {
         options: VulkanOptions,
         control: &Control<'_>,
     ) -> Result<Self> {
-        Self::with_programs(context, scene, options, &Arc::default(), control)
+        Self::on(&Device::of(Arc::clone(context)), scene, options, control)
     }
 
     /// The same for another scene on the same device. Programs that are compiled stay so.
@@ -78,22 +82,27 @@ impl VulkanBackend {
     /// # Panics
     /// If an index in the scene is out of range.
     pub fn with_scene(&self, scene: &Arc<Scene>, control: &Control<'_>) -> Result<Self> {
-        Self::with_programs(&self.context, scene, self.options, &self.programs, control)
+        Self::on(&self.device, scene, self.options, control)
     }
 
-    fn with_programs(
-        context: &Arc<Context>,
+    /// The same on a device that other backends may be using.
+    ///
+    /// # Panics
+    /// If an index in the scene is out of range.
+    pub fn on(
+        device: &Device,
         scene: &Arc<Scene>,
         options: VulkanOptions,
-        programs: &Arc<ProgramCache>,
         control: &Control<'_>,
     ) -> Result<Self> {
+        let context = device.context();
         let mode = options.trace.resolve(context)?;
         let surfaces = Surfaces::new(Arc::clone(scene));
         let opaque: Vec<bool> = (0..scene.meshes.len() as u32).map(|mesh| surfaces.is_opaque(mesh)).collect();
         let acceleration = Acceleration::build(context, scene, &opaque, &options.acceleration, control)?;
         let tables = Tables::new(context, scene, acceleration.placements(), acceleration.refs())?;
-        let state = State::new(context, &acceleration, mode, programs)?;
+        let mut state = State::new(device, &acceleration, mode)?;
+        state.budget.bound(options.submission, usual_submission(context));
         Ok(Self {
             state: Mutex::new(state),
             motion: None,
@@ -102,7 +111,7 @@ impl VulkanBackend {
             context: Arc::clone(context),
             mode,
             options,
-            programs: Arc::clone(programs),
+            device: device.clone(),
         })
     }
 
@@ -120,7 +129,7 @@ impl VulkanBackend {
         let motion = match &mut self.motion {
             Some(motion) => motion,
             none => {
-                let programs = self.programs.motion(&state.interface)?;
+                let programs = self.device.programs().motion(&state.interface)?;
                 none.insert(Motion::new(&self.context, scene, &self.acceleration, &self.tables, &programs)?)
             }
         };
@@ -130,7 +139,13 @@ impl VulkanBackend {
         Ok(stats)
     }
 
-    /// The device.
+    /// The device, for other backends to share.
+    #[must_use]
+    pub const fn device(&self) -> &Device {
+        &self.device
+    }
+
+    /// The connection to the device.
     #[must_use]
     pub const fn context(&self) -> &Arc<Context> {
         &self.context
@@ -330,8 +345,7 @@ impl VulkanBackend {
                 *stage(&mut times, timing.label) += timing.duration.unwrap_or_default();
             }
             if *adapts {
-                let target =
-                    if is_software(&self.context) { SUBMISSION_IN_SOFTWARE } else { SUBMISSION_ON_HARDWARE };
+                let target = self.options.submission.unwrap_or(usual_submission(&self.context));
                 budget.learn(cost_of(steps, passes), start.elapsed(), target);
             }
             (control.progress)((index + 1) as f32 / submissions.len() as f32);
@@ -376,8 +390,12 @@ fn check_search(settings: &Settings) -> Result<()> {
     Ok(())
 }
 
-fn is_software(context: &Context) -> bool {
-    context.report().kind == DeviceKind::Software
+/// Time that a submission should take unless the caller says otherwise.
+fn usual_submission(context: &Context) -> Duration {
+    match context.report().kind {
+        DeviceKind::Software => SUBMISSION_IN_SOFTWARE,
+        _ => SUBMISSION_ON_HARDWARE,
+    }
 }
 
 const fn label(work: StepWork) -> &'static str {

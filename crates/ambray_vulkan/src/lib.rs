@@ -7,6 +7,7 @@ mod commands;
 mod constants;
 mod context;
 pub mod cost;
+mod device;
 mod error;
 mod history;
 pub mod layout;
@@ -34,6 +35,7 @@ pub use context::{
     Capability, Context, DeviceKind, DeviceOptions, DeviceReport, Limits, Live, Need, VALIDATION_LOG,
     ValidationLog, choose, probe,
 };
+pub use device::Device;
 pub use error::{MemorySide, Result, VulkanError};
 pub use memory::{Buffer, Location};
 pub use pipeline::TraceMode;

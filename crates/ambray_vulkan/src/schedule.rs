@@ -37,7 +37,12 @@ pub(crate) struct Budget {
     pub(crate) cost: u64,
     pub(crate) pixels: u64,
     pub(crate) side: u32,
+    /// Least cost that is learnt: below it, waiting would outweigh the work.
+    pub(crate) least: u64,
 }
+
+/// Least cost of a submission, and where the caller has set a bound to its time.
+const LEAST: [u64; 2] = [1 << 18, 1 << 12];
 
 impl Budget {
     /// For a device about whose speed nothing is known yet.
@@ -52,11 +57,18 @@ impl Budget {
             },
             // Both passes of workgroups and of rays must fit along each axis.
             side: groups.saturating_mul(QUERY_WIDTH.min(QUERY_HEIGHT)).max(1),
+            least: LEAST[0],
         }
     }
-}
 
-impl Budget {
+    /// Begins with submissions of about `bound`, if one is set, where those so far would take about `usual`.
+    pub(crate) fn bound(&mut self, bound: Option<Duration>, usual: Duration) {
+        let Some(bound) = bound else { return };
+        self.least = LEAST[1];
+        let share = bound.as_secs_f64() / usual.as_secs_f64();
+        self.cost = ((self.cost as f64 * share) as u64).clamp(self.least, self.cost);
+    }
+
     /// Learns from a submission of `cost` that took `elapsed`, so that the next ones take about `target`.
     pub(crate) fn learn(&mut self, cost: u64, elapsed: Duration, target: Duration) {
         // Small ones tell more about waiting than about work.
@@ -64,7 +76,7 @@ impl Budget {
             return;
         }
         let rate = cost as f64 / elapsed.as_secs_f64().max(1e-4);
-        self.cost = ((rate * target.as_secs_f64()) as u64).clamp(1 << 18, 1 << 30);
+        self.cost = ((rate * target.as_secs_f64()) as u64).clamp(self.least, 1 << 30);
     }
 }
 
@@ -125,7 +137,7 @@ mod tests {
     fn each_pass_covers_each_pixel_once_in_order() {
         for (cost, pixels, side) in [(1 << 20, 1 << 30, 65535), (1000, 1 << 30, 64), (7, 100, 16), (1, 1, 1)]
         {
-            let budget = Budget { cost, pixels, side };
+            let budget = Budget { cost, pixels, side, least: LEAST[0] };
             let size = [53, 37];
             let steps: Vec<_> = submissions(&PASSES, size, budget).concat();
             for pass in PASSES {
@@ -150,7 +162,7 @@ mod tests {
 
     #[test]
     fn budgets_follow_the_speed_of_the_device() {
-        let mut budget = Budget { cost: 1 << 22, pixels: u64::MAX, side: 65535 };
+        let mut budget = Budget { cost: 1 << 22, pixels: u64::MAX, side: 65535, least: LEAST[0] };
         let target = Duration::from_millis(100);
         budget.learn(1 << 22, Duration::from_millis(10), target);
         assert!((budget.cost as f64 / f64::from(10 << 22) - 1.0).abs() < 1e-6);
@@ -163,8 +175,24 @@ mod tests {
     }
 
     #[test]
+    fn a_bound_makes_submissions_short_from_the_first_on() {
+        let usual = Duration::from_secs(1);
+        let fresh = Budget { cost: 1 << 20, pixels: u64::MAX, side: 65535, least: LEAST[0] };
+        let mut budget = fresh;
+        budget.bound(None, usual);
+        assert_eq!(budget, fresh);
+        budget.bound(Some(usual / 16), usual);
+        assert_eq!(budget.cost, 1 << 16);
+        budget.learn(1 << 16, usual, usual / 16);
+        assert_eq!(budget.cost, 1 << 12, "slower than thought");
+        let mut budget = fresh;
+        budget.bound(Some(Duration::ZERO), usual);
+        assert_eq!(budget.cost, 1 << 12, "as short as is sensible");
+    }
+
+    #[test]
     fn a_small_frame_is_one_submission() {
-        let budget = Budget { cost: 1 << 26, pixels: 1 << 30, side: 65535 };
+        let budget = Budget { cost: 1 << 26, pixels: 1 << 30, side: 65535, least: LEAST[0] };
         assert_eq!(submissions(&PASSES, [640, 360], budget).len(), 1);
         assert!(submissions(&PASSES, [3840, 2160], budget).len() > 4);
     }

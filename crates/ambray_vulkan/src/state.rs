@@ -9,7 +9,7 @@ use ambray_core::{
 use ash::vk::BufferUsageFlags;
 
 use crate::{
-    Acceleration, Buffer, CommandSet, Context, DeviceKind, Location, Result, TopLevel, TraceMode,
+    Acceleration, Buffer, CommandSet, Context, Device, DeviceKind, Location, Result, TopLevel, TraceMode,
     constants::{self, SampleTables},
     history::History,
     layout::{self, Specialization},
@@ -59,12 +59,8 @@ pub(crate) struct State {
 
 impl State {
     /// `mode` is resolved.
-    pub(crate) fn new(
-        context: &Arc<Context>,
-        acceleration: &Acceleration,
-        mode: TraceMode,
-        programs: &Arc<ProgramCache>,
-    ) -> Result<Self> {
+    pub(crate) fn new(device: &Device, acceleration: &Acceleration, mode: TraceMode) -> Result<Self> {
+        let context = device.context();
         let top = TopLevel::new(context, acceleration)?;
         let interface = Interface::new(context)?;
         interface.bind(top.handle());
@@ -82,7 +78,7 @@ impl State {
             history: None,
             samples: None,
             lights: None,
-            programs: Arc::clone(programs),
+            programs: Arc::clone(device.programs()),
             interface,
             context: Arc::clone(context),
             mode,

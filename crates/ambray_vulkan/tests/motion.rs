@@ -41,7 +41,7 @@ fn open(context: &Arc<Context>, scene: &Arc<Scene>, trace: TraceMode, updates: U
     // Where there are two ways to trace, one shares its scratch memory among all builds and the other builds one by one.
     let batch = if trace == TraceMode::Query { 1 } else { AccelerationOptions::default().batch };
     let acceleration = AccelerationOptions { updates, batch, ..AccelerationOptions::default() };
-    let options = VulkanOptions { trace, acceleration };
+    let options = VulkanOptions { trace, acceleration, ..VulkanOptions::default() };
     VulkanBackend::new(context, scene, options, &Control::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 

@@ -51,7 +51,30 @@ impl ComputePipeline {
         Ok(Self { context: Arc::clone(context), handle })
     }
 
-    /// Records the shader over `push.extent` pixels, in workgroups of the size that it was written for.
+    /// Records the shader, which traces rays, over `push.extent` pixels, in workgroups of the size that it was written for.
+    pub(crate) fn record_tracing(
+        &self,
+        recorder: &mut Recorder<'_>,
+        interface: &Interface,
+        workgroup: [u32; 2],
+        push: Push,
+    ) {
+        // SAFETY: the buffer is being recorded; set and layout belong together and outlive the submission.
+        unsafe {
+            self.context.device.cmd_bind_descriptor_sets(
+                recorder.raw(),
+                vk::PipelineBindPoint::COMPUTE,
+                interface.layout,
+                0,
+                &[interface.set],
+                &[],
+            );
+        }
+        self.record(recorder, interface, workgroup, push);
+    }
+
+    /// Records the shader, which traces no rays, in the same way. Programs of this kind may be shared by backends: no
+    /// structure is bound, which could be another backend's and gone.
     pub(crate) fn record(
         &self,
         recorder: &mut Recorder<'_>,
@@ -61,19 +84,11 @@ impl ComputePipeline {
     ) {
         let device = &self.context.device;
         let groups = [0, 1].map(|axis| push.extent[axis].div_ceil(workgroup[axis]));
-        // SAFETY: the buffer is being recorded; pipeline, set and layout belong together and outlive the submission; the
-        // caller kept the extent within what the device dispatches.
+        // SAFETY: the buffer is being recorded; pipeline and layout belong together and outlive the submission; the caller
+        // kept the extent within what the device dispatches.
         unsafe {
             let buffer = recorder.raw();
             device.cmd_bind_pipeline(buffer, vk::PipelineBindPoint::COMPUTE, self.handle);
-            device.cmd_bind_descriptor_sets(
-                buffer,
-                vk::PipelineBindPoint::COMPUTE,
-                interface.layout,
-                0,
-                &[interface.set],
-                &[],
-            );
             let bytes = bytemuck::bytes_of(&push);
             device.cmd_push_constants(buffer, interface.layout, push_stages(&self.context), 0, bytes);
             device.cmd_dispatch(buffer, groups[0], groups[1], 1);

@@ -118,7 +118,7 @@ impl Programs {
             Tracing::Pipeline(pipeline) => pipeline.record(recorder, interface, pass, push),
             Tracing::Query(pipelines) => {
                 let workgroup = [layout::QUERY_WIDTH, layout::QUERY_HEIGHT];
-                pipelines[pass as usize].record(recorder, interface, workgroup, push);
+                pipelines[pass as usize].record_tracing(recorder, interface, workgroup, push);
             }
         }
     }
