@@ -13,6 +13,7 @@
 #include "include/sampling.glsl"
 #include "include/shape.glsl"
 #include "include/texture.glsl"
+#include "include/tone_map.glsl"
 
 layout(local_size_x = QUERY_WIDTH, local_size_y = QUERY_HEIGHT) in;
 
@@ -165,5 +166,9 @@ void main() {
             put(0u, compose(vector(0u), vector(3u), vector(6u), vector4(9u), vector(13u)));
             break;
         case FUNCTION_PREVIOUS: previous(); break;
+        case FUNCTION_TONE_MAP:
+            put(0u, display_color(vector(0u), number(3u), word(4u)));
+            put(3u, neutral(vector(0u)));
+            break;
     }
 }

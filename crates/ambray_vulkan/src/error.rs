@@ -62,6 +62,9 @@ pub enum VulkanError {
         /// How much the device allows.
         limit: u64,
     },
+    /// There is no frame to be shown or read: none was drawn yet, or the planes were used otherwise since. Draw one.
+    #[error("no frame has been drawn")]
+    NothingDrawn,
     /// The caller stopped the work.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),

@@ -5,11 +5,13 @@
 //! are stored as [`FAR`], since GPUs need not preserve infinities.
 
 mod declare;
+mod display;
 mod motion;
 mod scene;
 mod specialization;
 mod view;
 
+pub use display::Display;
 pub use motion::{Clusters, Deformation, Influence, Target};
 pub(crate) use motion::{ordered, unordered};
 pub use scene::{
@@ -115,6 +117,33 @@ constants! {
     TEST_RELATIVE: u32 = 2;
     TEST_NONE: u32 = 3;
 
+    /// Planes by name.
+    AOV_BEAUTY: u32 = 0;
+    AOV_OPENNESS: u32 = 1;
+    AOV_OPENNESS_RAW: u32 = 2;
+    AOV_NEAR_RADIANCE: u32 = 3;
+    AOV_NEAR_RADIANCE_RAW: u32 = 4;
+    AOV_DIRECT: u32 = 5;
+    AOV_ALBEDO: u32 = 6;
+    AOV_EMISSION: u32 = 7;
+    AOV_DEPTH: u32 = 8;
+    AOV_POSITION: u32 = 9;
+    AOV_GEOMETRIC_NORMAL: u32 = 10;
+    AOV_SHADING_NORMAL: u32 = 11;
+    AOV_BENT_NORMAL: u32 = 12;
+    AOV_MATERIAL: u32 = 13;
+    AOV_INSTANCE: u32 = 14;
+    AOV_SAMPLE_CLASS: u32 = 15;
+    AOV_RAY_COUNT: u32 = 16;
+    AOV_MOTION: u32 = 17;
+    AOV_HISTORY: u32 = 18;
+
+    TONE_NONE: u32 = 0;
+    TONE_NEUTRAL: u32 = 1;
+
+    /// Least movement that colours are relative to: the smallest normal number.
+    LEAST_MOTION: f32 = 1.17549435e-38;
+
     /// Accumulation over frames (`ambray_core::temporal`).
     LONGEST: f32 = 1048576.0;
     MOVING: f32 = 16.0;
@@ -134,6 +163,8 @@ constants! {
 
     /// Invocations of a workgroup of what deforms meshes and measures them.
     MOTION_WIDTH: u32 = 64;
+    /// Invocations of a workgroup of sums and boxes over all pixels.
+    REDUCE_WIDTH: u32 = 128;
     /// Words of a box, and of a cluster: lowest corner, then the negated highest corner, then a count.
     BOX_WORDS: u32 = 6;
     CLUSTER_WORDS: u32 = 7;
@@ -155,6 +186,7 @@ constants! {
     FUNCTION_FINISH: u32 = 13;
     FUNCTION_COMPOSE: u32 = 14;
     FUNCTION_PREVIOUS: u32 = 15;
+    FUNCTION_TONE_MAP: u32 = 16;
     ARGUMENTS: u32 = 16;
     VALUES: u32 = 8;
 }
@@ -171,6 +203,7 @@ pub fn glsl() -> String {
     scene::glsl(&mut text);
     motion::glsl(&mut text);
     view::glsl(&mut text);
+    display::glsl(&mut text);
     text.push_str("\n#endif\n");
     text
 }
@@ -183,8 +216,9 @@ pub(crate) const fn finite(length: f32) -> f32 {
 
 #[cfg(test)]
 mod tests {
+    use ambray_core::aov::Aov;
     use ambray_core::settings::{
-        Falloff, FilterTest, NearRadiance, Normals, RadianceSource, Sampling, Sequence, Thin, Window,
+        Falloff, FilterTest, NearRadiance, Normals, RadianceSource, Sampling, Sequence, Thin, ToneMap, Window,
     };
     use ambray_core::trace::Motion;
 
@@ -217,6 +251,20 @@ mod tests {
         assert_eq!([0, SEQUENCE_OWEN, SEQUENCE_R2], of(Sequence::ALL, |c| c as u32));
         assert_eq!([WINDOW_OFF, WINDOW_BOX, WINDOW_CENTRED], of(Window::ALL, |c| c as u32));
         assert_eq!([TEST_PLANE, TEST_ABSOLUTE, TEST_RELATIVE, TEST_NONE], of(FilterTest::ALL, |c| c as u32));
+    }
+
+    /// Planes go by their place in the list, and the names of constants by those of planes.
+    #[test]
+    fn planes_have_one_list() {
+        assert_eq!([TONE_NONE, TONE_NEUTRAL], of(ToneMap::ALL, |c| c as u32));
+        assert_eq!(LEAST_MOTION, f32::MIN_POSITIVE);
+        for (number, aov) in Aov::ALL.iter().enumerate() {
+            assert_eq!(*aov as usize, number);
+            let name = aov.name().replace('-', "_").to_uppercase();
+            let declared = format!("const uint AOV_{name} = {number}u;\n");
+            assert!(CONSTANTS_GLSL.contains(&declared), "{declared}");
+        }
+        assert_eq!(CONSTANTS_GLSL.matches(" AOV_").count(), Aov::ALL.len());
     }
 
     #[track_caller]

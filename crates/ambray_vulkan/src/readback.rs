@@ -98,13 +98,8 @@ fn move_pixels(
     Ok(())
 }
 
-/// The ray counts of `count` pixels or points.
-pub(crate) fn tallies(context: &Arc<Context>, state: &State, count: usize) -> Result<Vec<Tally>> {
-    Reader::new(context, state, count)?.read(Plane::Tallies)
-}
-
 /// Rays by type, one primary ray for each tally.
-pub(crate) fn ray_counts(tallies: &[Tally]) -> RayCounts {
+fn ray_counts(tallies: &[Tally]) -> RayCounts {
     let sum = |rays: fn(&Tally) -> u32| tallies.iter().map(|tally| u64::from(rays(tally))).sum();
     RayCounts {
         primary: tallies.len() as u64,

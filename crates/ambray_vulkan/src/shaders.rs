@@ -20,6 +20,9 @@ modules! {
     ASSIGN = "assign.comp";
     MEASURE = "measure.comp";
     COST = "cost.comp";
+    SUMS = "sums.comp";
+    BOUNDS = "bounds.comp";
+    SHOW = "show.comp";
     CLOSEST_HIT = "hit.rchit";
     MISS = "miss.rmiss";
     MASKED_ANY_HIT = "masked.rahit";

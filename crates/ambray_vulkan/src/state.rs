@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use ambray_core::{
+    frame::FrameStats,
     settings::{Sampling, Sequence, Settings, Temporal},
     view::View,
 };
@@ -11,10 +12,12 @@ use ash::vk::BufferUsageFlags;
 use crate::{
     Acceleration, Buffer, CommandSet, Context, Device, DeviceKind, Location, Result, TopLevel, TraceMode,
     constants::{self, SampleTables},
+    display::Painter,
     history::History,
     layout::{self, Specialization},
     pipeline::{Interface, ProgramCache, Programs},
     planes::Planes,
+    reduce::Sums,
     schedule::Budget,
 };
 
@@ -34,6 +37,16 @@ const fn sample_key(settings: &Settings) -> SampleKey {
     (settings.sampling, settings.sequence, settings.spp, settings.frame, settings.seed)
 }
 
+/// A frame that the planes hold, all of it.
+#[derive(Clone, Debug)]
+pub(crate) struct Drawn {
+    pub(crate) settings: Settings,
+    pub(crate) view: View,
+    /// With the addresses of the planes, and of what is accumulated.
+    pub(crate) constants: layout::View,
+    pub(crate) stats: FrameStats,
+}
+
 /// Used by one frame at a time.
 #[derive(Debug)]
 pub(crate) struct State {
@@ -46,6 +59,11 @@ pub(crate) struct State {
     pub(crate) adapts: bool,
     /// Whether a frame of the current pose was rendered.
     pub(crate) rendered: bool,
+    /// The frame that the planes hold; `None` while they hold none, or something else.
+    pub(crate) drawn: Option<Drawn>,
+    pub(crate) sums: Sums,
+    /// Made when a plane is first shown.
+    pub(crate) painter: Option<Painter>,
     planes: Option<Planes>,
     /// Where light is accumulated over frames.
     history: Option<History>,
@@ -74,6 +92,9 @@ impl State {
             adapts: true,
             rendered: false,
             budget: Budget::of(context.limits(), context.report().kind == DeviceKind::Software),
+            drawn: None,
+            sums: Sums::new(context)?,
+            painter: None,
             planes: None,
             history: None,
             samples: None,
@@ -85,8 +106,9 @@ impl State {
         })
     }
 
-    /// Makes planes and tables fit for `inputs`; returns the constants with all addresses.
+    /// Makes planes and tables fit for `inputs`, which will overwrite what was drawn; returns the constants with all addresses.
     pub(crate) fn prepare(&mut self, inputs: &Inputs<'_>) -> Result<layout::View> {
+        self.drawn = None;
         let pixels = u64::from(inputs.size[0]) * u64::from(inputs.size[1]);
         if !self.planes.as_ref().is_some_and(|planes| planes.suits(pixels)) {
             // Freed before the new ones are made.

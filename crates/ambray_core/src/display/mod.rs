@@ -21,5 +21,5 @@ mod tone_map;
 
 pub use false_colour::show;
 pub use picture::Picture;
-pub use scalar::{ends, shade};
+pub use scalar::{color, ends, shade};
 pub use tone_map::{display, encode, neutral};

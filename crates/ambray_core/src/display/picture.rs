@@ -49,7 +49,7 @@ impl Picture {
 }
 
 /// Plain rounding without dither, so that the same picture gives the same bytes. Casts saturate, and NaN becomes 0.
-fn eight_bit(value: f32) -> u8 {
+pub(super) fn eight_bit(value: f32) -> u8 {
     (value * 255.0 + 0.5) as u8
 }
 

@@ -1,9 +1,8 @@
 //! Planes of one number a pixel as shades of a ramp.
 
-use colorous::Gradient;
 use glam::Vec3;
 
-use super::Picture;
+use super::{Picture, picture::eight_bit};
 use crate::{
     aov::AovKind,
     settings::{Ramp, Range, Settings},
@@ -43,18 +42,26 @@ fn place(value: f32, low: f32, high: f32) -> f32 {
     }
 }
 
-/// Display value of the `ramp` at `t`: its beginning at 0, its end at 1.
+/// Display value of the `ramp` at `t`: its beginning at 0, its end at 1. A ramp of colours has one for each byte of grey.
 #[must_use]
 pub fn shade(ramp: Ramp, t: f32) -> Vec3 {
-    let gradient: Gradient = match ramp {
-        Ramp::Grey => return Vec3::splat(t),
+    match ramp {
+        Ramp::Grey => Vec3::splat(t),
+        ramp => Vec3::from_array(color(ramp, eight_bit(t)).map(f32::from)) / 255.0,
+    }
+}
+
+/// Red, green and blue of the `ramp` where grey would be `grey`.
+#[must_use]
+pub fn color(ramp: Ramp, grey: u8) -> [u8; 3] {
+    let gradient = match ramp {
+        Ramp::Grey => return [grey; 3],
         Ramp::Viridis => colorous::VIRIDIS,
         Ramp::Magma => colorous::MAGMA,
         Ramp::Turbo => colorous::TURBO,
         Ramp::Cividis => colorous::CIVIDIS,
     };
-    let color = gradient.eval_continuous(f64::from(t));
-    Vec3::from_array(color.into_array().map(f32::from)) / 255.0
+    gradient.eval_rational(grey.into(), 256).into_array()
 }
 
 #[cfg(test)]

@@ -69,6 +69,28 @@ const uint TEST_PLANE = 0u;
 const uint TEST_ABSOLUTE = 1u;
 const uint TEST_RELATIVE = 2u;
 const uint TEST_NONE = 3u;
+const uint AOV_BEAUTY = 0u;
+const uint AOV_OPENNESS = 1u;
+const uint AOV_OPENNESS_RAW = 2u;
+const uint AOV_NEAR_RADIANCE = 3u;
+const uint AOV_NEAR_RADIANCE_RAW = 4u;
+const uint AOV_DIRECT = 5u;
+const uint AOV_ALBEDO = 6u;
+const uint AOV_EMISSION = 7u;
+const uint AOV_DEPTH = 8u;
+const uint AOV_POSITION = 9u;
+const uint AOV_GEOMETRIC_NORMAL = 10u;
+const uint AOV_SHADING_NORMAL = 11u;
+const uint AOV_BENT_NORMAL = 12u;
+const uint AOV_MATERIAL = 13u;
+const uint AOV_INSTANCE = 14u;
+const uint AOV_SAMPLE_CLASS = 15u;
+const uint AOV_RAY_COUNT = 16u;
+const uint AOV_MOTION = 17u;
+const uint AOV_HISTORY = 18u;
+const uint TONE_NONE = 0u;
+const uint TONE_NEUTRAL = 1u;
+const float LEAST_MOTION = 1.17549435e-38;
 const float LONGEST = 1048576.0;
 const float MOVING = 16.0;
 const float CHANGING = 2.0;
@@ -82,6 +104,7 @@ const uint FILTER_REACH = 2u;
 const uint QUERY_WIDTH = 8u;
 const uint QUERY_HEIGHT = 4u;
 const uint MOTION_WIDTH = 64u;
+const uint REDUCE_WIDTH = 128u;
 const uint BOX_WORDS = 6u;
 const uint CLUSTER_WORDS = 7u;
 const uint FUNCTION_INTEGERS = 0u;
@@ -100,6 +123,7 @@ const uint FUNCTION_SHAPE_SURFACE = 12u;
 const uint FUNCTION_FINISH = 13u;
 const uint FUNCTION_COMPOSE = 14u;
 const uint FUNCTION_PREVIOUS = 15u;
+const uint FUNCTION_TONE_MAP = 16u;
 const uint ARGUMENTS = 16u;
 const uint VALUES = 8u;
 
@@ -390,6 +414,16 @@ struct Push {
     uint64_t view;
     uvec2 origin;
     uvec2 extent;
+};
+
+struct Display {
+    uint64_t ramp;
+    uint64_t bounds;
+    uint plane;
+    uint tone_map;
+    float brightness;
+    uint has_range;
+    vec2 range;
 };
 
 #endif

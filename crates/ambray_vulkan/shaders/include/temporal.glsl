@@ -3,8 +3,7 @@
 #define TEMPORAL_GLSL
 
 #include "acceptance.glsl"
-
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Frames { float at[]; };
+#include "earlier.glsl"
 
 // Filtered openness and near radiance, bent normal with the share M that may change, and frames that they are the mean of.
 struct Mean {
@@ -14,15 +13,6 @@ struct Mean {
 };
 
 const Mean NO_MEAN = Mean(vec4(0.0), vec4(0.0), 0.0);
-
-#define TEMPORAL_VIEW VIEW.temporal
-
-// View depth and size of a pixel there, in the last frame.
-vec2 earlier_depth(vec3 point) {
-    float depth = dot(point - TEMPORAL_VIEW.eye, TEMPORAL_VIEW.forward);
-    float pixel = TEMPORAL_VIEW.half_height / (0.5 * float(VIEW.size.y));
-    return vec2(depth, TEMPORAL_VIEW.orthographic != 0u ? pixel : depth * pixel);
-}
 
 bool earlier_accepts(vec4 then, vec3 normal, float footprint, uint q) {
     vec4 other = Plane(TEMPORAL_VIEW.earlier.positions).at[q];
@@ -42,10 +32,7 @@ Mean resampled(vec4 then, vec3 normal, float footprint) {
         return NO_MEAN;
     }
     vec2 size = vec2(VIEW.size);
-    vec3 offset = then.xyz - TEMPORAL_VIEW.eye;
-    vec2 place = vec2(
-        dot(offset, TEMPORAL_VIEW.right) / footprint + 0.5 * (size.x - 1.0),
-        0.5 * (size.y - 1.0) - dot(offset, TEMPORAL_VIEW.up) / footprint);
+    vec2 place = earlier_place(then.xyz, footprint);
     vec2 corner = floor(place);
     vec2 share = place - corner;
     Mean sum = NO_MEAN;

@@ -25,7 +25,7 @@ pub enum Work {
 
 impl Work {
     /// Stages that do the work, and what they may do there.
-    pub(super) fn mask(self, pipelines: bool, queries: bool) -> (vk::PipelineStageFlags, vk::AccessFlags) {
+    pub(crate) fn mask(self, pipelines: bool, queries: bool) -> (vk::PipelineStageFlags, vk::AccessFlags) {
         use vk::{AccessFlags as A, PipelineStageFlags as S};
         let shader = A::SHADER_READ | A::SHADER_WRITE | A::UNIFORM_READ;
         match self {

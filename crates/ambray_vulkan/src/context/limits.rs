@@ -50,6 +50,8 @@ pub struct Limits {
     pub allocation: u64,
     /// Size of the largest heap that is local to the device.
     pub heap: u64,
+    /// Most pixels along a side of an image.
+    pub image_side: u32,
     /// Granularity with which memory that is not coherent is flushed.
     pub atom: u64,
 }
@@ -96,6 +98,7 @@ impl Limits {
             timestamp_bits,
             allocation: eleven.max_memory_allocation_size,
             heap,
+            image_side: limits.max_image_dimension2_d,
             atom: limits.non_coherent_atom_size.max(1),
         }
     }

@@ -57,7 +57,9 @@ pub struct Context {
 pub struct Live {
     /// Number of buffers.
     pub buffers: u64,
-    /// Memory of the buffers, bytes.
+    /// Number of images.
+    pub images: u64,
+    /// Memory of the buffers and images, bytes.
     pub bytes: u64,
     /// Number of acceleration structures.
     pub acceleration_structures: u64,
@@ -67,6 +69,7 @@ pub struct Live {
 #[derive(Debug, Default)]
 pub(crate) struct LiveCounters {
     pub(crate) buffers: AtomicU64,
+    pub(crate) images: AtomicU64,
     pub(crate) bytes: AtomicU64,
     pub(crate) acceleration_structures: AtomicU64,
 }
@@ -154,6 +157,7 @@ impl Context {
         let read = |counter: &AtomicU64| counter.load(Ordering::Relaxed);
         Live {
             buffers: read(&self.live.buffers),
+            images: read(&self.live.images),
             bytes: read(&self.live.bytes),
             acceleration_structures: read(&self.live.acceleration_structures),
         }

@@ -121,9 +121,10 @@ structures! {
         filtered_bent: u64,
         /// `vec4`: the picture.
         beauty: u64,
-        /// Inputs of a batch: [`Ray`]s, or the arguments of a function under test.
+        /// Inputs of a batch: [`Ray`]s, how a plane is shown ([`Display`](super::Display)), or the arguments of a function under
+        /// test.
         inputs: u64,
-        /// Outputs of a batch: [`RayHit`]s, or the values of a function under test.
+        /// Outputs of a batch: [`RayHit`]s, sums, the bytes of a picture, or the values of a function under test.
         outputs: u64,
         /// Accumulation over frames.
         temporal: TemporalConstants,

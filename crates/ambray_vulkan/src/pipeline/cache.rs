@@ -3,7 +3,9 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::{Interface, Programs, TraceMode};
-use crate::{Result, layout::Specialization, motion::MotionPrograms};
+use crate::{
+    Result, display::DisplayPrograms, layout::Specialization, motion::MotionPrograms, reduce::SumProgram,
+};
 
 /// Programs of so many settings are kept.
 const KEPT: usize = 64;
@@ -13,6 +15,8 @@ const KEPT: usize = 64;
 pub(crate) struct ProgramCache {
     passes: Kept<(TraceMode, Specialization), Programs>,
     motion: Kept<(), MotionPrograms>,
+    sums: Kept<(), SumProgram>,
+    display: Kept<Specialization, DisplayPrograms>,
 }
 
 impl ProgramCache {
@@ -29,6 +33,20 @@ impl ProgramCache {
     /// Programs that move scenes.
     pub(crate) fn motion(&self, interface: &Arc<Interface>) -> Result<Arc<MotionPrograms>> {
         self.motion.get((), || MotionPrograms::new(interface))
+    }
+
+    /// The program that counts rays.
+    pub(crate) fn sums(&self, interface: &Arc<Interface>) -> Result<Arc<SumProgram>> {
+        self.sums.get((), || SumProgram::new(interface))
+    }
+
+    /// Programs that show planes, for these constants.
+    pub(crate) fn display(
+        &self,
+        interface: &Arc<Interface>,
+        specialization: &Specialization,
+    ) -> Result<Arc<DisplayPrograms>> {
+        self.display.get(*specialization, || DisplayPrograms::new(interface, specialization))
     }
 }
 
