@@ -42,7 +42,7 @@ pub use ambray_scene as scene;
 pub use ambray_vulkan as vulkan;
 pub use ambray_vulkan::Device;
 pub use backend::{BackendChoice, RendererOptions};
-pub use renderer::{BuildStats, Machine, RenderError, Renderer};
+pub use renderer::{BuildStats, DeviceFrame, Drawn, Machine, RenderError, Renderer};
 
 /// The code in the README compiles.
 #[cfg(doctest)]

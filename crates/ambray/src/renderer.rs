@@ -6,6 +6,7 @@ use std::{
 };
 
 use ambray_core::{
+    aov::Aov,
     control::Control,
     frame::{Frame, FrameStats, PoseStats, StageTimes},
     inspect::{Inspection, OutsidePicture, inspect},
@@ -16,11 +17,11 @@ use ambray_core::{
 };
 use ambray_cpu::{BackendError, BuildOptions};
 use ambray_scene::Scene;
-use ambray_vulkan::{AccelerationStats, DeviceReport, TraceMode, VulkanError};
+use ambray_vulkan::{AccelerationStats, DeviceReport, Picture, TraceMode, VulkanError};
 use glam::Vec3;
 
 use crate::{
-    BackendChoice, RendererOptions,
+    BackendChoice, Device, RendererOptions,
     backend::{Backend, Backends},
     device::{DeviceTrace, DeviceWorld},
     framing::Framing,
@@ -70,6 +71,9 @@ pub enum RenderError {
     /// The Vulkan device could not be used, or failed.
     #[error("{0}")]
     Vulkan(VulkanError),
+    /// No frame is on a device to be shown or read: draw one first.
+    #[error("no frame has been drawn on a device")]
+    NothingDrawn,
     /// [`Control::cancel`] was set.
     #[error("cancelled")]
     Cancelled,
@@ -88,6 +92,7 @@ impl From<VulkanError> for RenderError {
     fn from(error: VulkanError) -> Self {
         match error {
             VulkanError::Cancelled(_) => Self::Cancelled,
+            VulkanError::NothingDrawn => Self::NothingDrawn,
             other => Self::Vulkan(other),
         }
     }
@@ -123,6 +128,44 @@ pub enum Machine {
         /// How it traces rays.
         trace: TraceMode,
     },
+}
+
+/// A frame, where it was rendered.
+#[derive(Clone, Debug)]
+pub enum Drawn {
+    /// On the processor.
+    Host(Box<Frame>),
+    /// On a device, where it stays: see [`Renderer::show`] and [`Renderer::read_frame`].
+    Device(Box<DeviceFrame>),
+}
+
+/// What is known on the host about a frame that stays on a device.
+#[derive(Clone, Debug)]
+pub struct DeviceFrame {
+    /// The view with everything chosen: camera, radius, lights.
+    pub view: View,
+    /// What it took.
+    pub stats: FrameStats,
+}
+
+impl Drawn {
+    /// The view with everything chosen.
+    #[must_use]
+    pub const fn view(&self) -> &View {
+        match self {
+            Self::Host(frame) => &frame.view,
+            Self::Device(frame) => &frame.view,
+        }
+    }
+
+    /// What it took.
+    #[must_use]
+    pub const fn stats(&self) -> &FrameStats {
+        match self {
+            Self::Host(frame) => &frame.stats,
+            Self::Device(frame) => &frame.stats,
+        }
+    }
 }
 
 /// A scene made ready for tracing.
@@ -203,7 +246,16 @@ impl Renderer {
         }
     }
 
-    /// The Vulkan device that renders; `None` on the processor.
+    /// The Vulkan device that renders, for other renderers to [share](RendererOptions::shared); `None` on the processor.
+    #[must_use]
+    pub fn shared(&self) -> Option<Device> {
+        match self.backends.current() {
+            Backend::Vulkan(vulkan) => Some(vulkan.device().clone()),
+            Backend::Cpu(_) => None,
+        }
+    }
+
+    /// What is known about the Vulkan device that renders; `None` on the processor.
     #[must_use]
     pub fn device(&self) -> Option<&DeviceReport> {
         match self.backends.current() {
@@ -313,15 +365,58 @@ impl Renderer {
         Ok(frame)
     }
 
+    /// Renders a frame and leaves it where it was rendered: nothing but its ray counts is copied from a device.
+    pub fn draw(&mut self, settings: &Settings, control: Control<'_>) -> Result<Drawn, RenderError> {
+        let (view, moved) = self.prepare(settings, control)?;
+        let mut drawn = self.stepping_in(|backend| match backend {
+            Backend::Cpu(cpu) => Ok(Drawn::Host(Box::new(cpu.render(settings, &view, control)?))),
+            Backend::Vulkan(vulkan) => {
+                let stats = vulkan.draw(settings, &view, control)?;
+                Ok(Drawn::Device(Box::new(DeviceFrame { view: view.clone(), stats })))
+            }
+        })?;
+        let times = match &mut drawn {
+            Drawn::Host(frame) => &mut frame.stats.times,
+            Drawn::Device(frame) => &mut frame.stats.times,
+        };
+        add(times, &moved);
+        Ok(drawn)
+    }
+
     /// Renders a frame and throws it away, without copying it from a device: what it took is what counts.
     pub fn measure(&mut self, settings: &Settings, control: Control<'_>) -> Result<FrameStats, RenderError> {
-        let (view, moved) = self.prepare(settings, control)?;
-        let mut stats = self.stepping_in(|backend| match backend {
-            Backend::Cpu(cpu) => Ok(cpu.render(settings, &view, control)?.stats),
-            Backend::Vulkan(vulkan) => Ok(vulkan.measure(settings, &view, control)?),
-        })?;
-        add(&mut stats.times, &moved);
-        Ok(stats)
+        self.draw(settings, control).map(|drawn| *drawn.stats())
+    }
+
+    /// The plane `aov` of the last frame on the device as a picture that windows can draw, with the exposure, tone map, ramp and
+    /// range of `settings`: the bytes that [`display::show`](crate::display::show) makes of [`read_frame`](Self::read_frame),
+    /// up to the rounding of the device. It is finished when the call returns, and stays as it is until the last holder drops
+    /// it, who must have waited for the device to be done with it. As many are made as are held at once; up to three are kept.
+    ///
+    /// # Errors
+    /// [`RenderError::NothingDrawn`] on the processor, where the frame is the caller's ([`Drawn::Host`]); before the first
+    /// frame; after a query, and after a frame that failed or was cancelled; and when the processor has just stepped in for a
+    /// device that failed.
+    pub fn show(&mut self, aov: Aov, settings: &Settings) -> Result<Arc<Picture>, RenderError> {
+        let errors = settings.validate();
+        if !errors.is_empty() {
+            return Err(RenderError::Settings(errors));
+        }
+        self.stepping_in(|backend| match backend {
+            Backend::Cpu(_) => Err(RenderError::NothingDrawn),
+            Backend::Vulkan(vulkan) => Ok(vulkan.show(aov, settings)?),
+        })
+    }
+
+    /// Copies the last frame on the device to the host, without rendering it again.
+    ///
+    /// # Errors
+    /// As [`show`](Self::show).
+    pub fn read_frame(&mut self) -> Result<Frame, RenderError> {
+        self.stepping_in(|backend| match backend {
+            Backend::Cpu(_) => Err(RenderError::NothingDrawn),
+            Backend::Vulkan(vulkan) => Ok(vulkan.read()?),
+        })
     }
 
     /// Evaluates ambient light at `points`; result `i` belongs to point `i`.

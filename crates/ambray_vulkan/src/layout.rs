@@ -142,7 +142,7 @@ constants! {
     TONE_NEUTRAL: u32 = 1;
 
     /// Least movement that colours are relative to: the smallest normal number.
-    LEAST_MOTION: f32 = 1.17549435e-38;
+    LEAST_MOTION: f32 = 1.1754944e-38;
 
     /// Accumulation over frames (`ambray_core::temporal`).
     LONGEST: f32 = 1048576.0;

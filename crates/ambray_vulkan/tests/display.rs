@@ -12,6 +12,7 @@ use ambray_core::{
     aov::Aov,
     control::Control,
     display,
+    frame::Frame,
     query::QueryPoint,
     settings::{Auto, RadianceSource, Ramp, Range, Settings, Temporal, Thin, ThinMinimum, ToneMap},
 };
@@ -26,10 +27,12 @@ fn open(context: &Arc<Context>, scene: Scene) -> VulkanBackend {
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn draw(backend: &VulkanBackend, settings: &Settings, width: u32, height: u32) {
+/// Draws, and copies the frame to the host.
+fn draw(backend: &VulkanBackend, settings: &Settings, width: u32, height: u32) -> Frame {
     let drawn = backend.draw(settings, &view(settings, width, height), Control::default());
     let stats = drawn.unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(stats.rays.primary, u64::from(width * height));
+    backend.read().unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Bytes that were compared, and those that differed.
@@ -40,10 +43,9 @@ struct Tally {
 }
 
 impl Tally {
-    /// Compares a plane of the drawn frame as the device and as the host show it.
-    fn compare(&mut self, backend: &VulkanBackend, aov: Aov, settings: &Settings, what: &str) {
-        let frame = backend.read().unwrap_or_else(|error| panic!("{error}"));
-        let expected = display::show(&frame, aov, settings).rgba8();
+    /// Compares a plane of the drawn frame as the device and as the host show it, who has a copy.
+    fn compare(&mut self, backend: &VulkanBackend, frame: &Frame, aov: Aov, settings: &Settings, what: &str) {
+        let expected = display::show(frame, aov, settings).rgba8();
         let picture = backend.show(aov, settings).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(picture.size(), (frame.width, frame.height), "{what}");
         let actual = backend.picture_bytes(&picture).unwrap_or_else(|error| panic!("{error}"));
@@ -93,10 +95,10 @@ fn every_plane_has_the_bytes_of_the_host() {
         let backend = open(&context, scene);
         for settings in &drawn {
             for (width, height) in sizes {
-                draw(&backend, settings, width, height);
+                let frame = draw(&backend, settings, width, height);
                 for shown in shown() {
                     let what = format!("{width} x {height} {:?} {:?}", shown.ramp, shown.tone_map);
-                    Aov::ALL.iter().for_each(|&aov| tally.compare(&backend, aov, &shown, &what));
+                    Aov::ALL.iter().for_each(|&aov| tally.compare(&backend, &frame, aov, &shown, &what));
                 }
             }
         }
@@ -110,9 +112,9 @@ fn the_atrium_has_the_bytes_of_the_host() {
     let Some(context) = context() else { return };
     let mut tally = Tally::default();
     let backend = open(&context, atrium::atrium());
-    draw(&backend, &Settings { spp: 2, ..Settings::default() }, 640, 360);
+    let frame = draw(&backend, &Settings { spp: 2, ..Settings::default() }, 640, 360);
     for shown in shown().iter().take(2) {
-        Aov::ALL.iter().for_each(|&aov| tally.compare(&backend, aov, shown, "atrium"));
+        Aov::ALL.iter().for_each(|&aov| tally.compare(&backend, &frame, aov, shown, "atrium"));
     }
     tally.finish();
     assert_valid(&context);
@@ -129,11 +131,10 @@ fn accumulation_and_movement_are_shown() {
         let pose = moving::pose(&scene, &mut random, 0.1);
         let [placed, _] = moving::posed(&scene, &pose);
         backend.pose(&placed, &pose, &Control::default()).unwrap_or_else(|error| panic!("{error}"));
-        draw(&backend, &settings, 64, 36);
+        let frame = draw(&backend, &settings, 64, 36);
         for aov in [Aov::Motion, Aov::History, Aov::Beauty, Aov::BentNormal] {
-            tally.compare(&backend, aov, &settings, &format!("frame {round}"));
+            tally.compare(&backend, &frame, aov, &settings, &format!("frame {round}"));
         }
-        let frame = backend.read().unwrap();
         let moves = frame.gbuffer.iter().any(|pixel| pixel.motion != glam::Vec2::ZERO);
         assert_eq!(moves, round > 0, "frame {round}");
     }

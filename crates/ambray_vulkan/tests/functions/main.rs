@@ -16,4 +16,5 @@ mod random;
 mod sampling;
 mod shapes;
 mod textures;
+mod tone_map;
 mod views;
