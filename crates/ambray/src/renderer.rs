@@ -383,6 +383,14 @@ impl Renderer {
         Ok(drawn)
     }
 
+    /// Forgets earlier frames: with [`Temporal::On`](ambray_core::settings::Temporal::On) the next one begins a sequence.
+    pub fn forget_frames(&mut self) {
+        match self.backends.current() {
+            Backend::Cpu(cpu) => cpu.forget_frames(),
+            Backend::Vulkan(vulkan) => vulkan.forget_frames(),
+        }
+    }
+
     /// Renders a frame and throws it away, without copying it from a device: what it took is what counts.
     pub fn measure(&mut self, settings: &Settings, control: Control<'_>) -> Result<FrameStats, RenderError> {
         self.draw(settings, control).map(|drawn| *drawn.stats())

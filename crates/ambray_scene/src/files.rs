@@ -42,13 +42,20 @@ pub(crate) fn read_regular(path: &Path, limit: u64, at: &str) -> Outcome<Vec<u8>
 pub(crate) struct Folder {
     base: PathBuf,
     left: u64,
+    /// Files that were read, or could not be.
+    asked: Vec<PathBuf>,
 }
 
 impl Folder {
     /// The folder of `scene_file`, of which `used` bytes have been read already.
     pub(crate) fn of(scene_file: &Path, used: u64) -> Self {
         let base = scene_file.parent().map(Path::to_path_buf).unwrap_or_default();
-        Self { base, left: limits::FILE_BYTES.saturating_sub(used) }
+        Self { base, left: limits::FILE_BYTES.saturating_sub(used), asked: Vec::new() }
+    }
+
+    /// The files that were asked for.
+    pub(crate) fn into_asked(self) -> Vec<PathBuf> {
+        self.asked
     }
 
     /// Reads the file that the percent-encoded relative `uri` names.
@@ -68,7 +75,12 @@ impl Folder {
         let relative = inside(name).ok_or_else(|| {
             Fault::invalid(at, format!("path {} does not stay in the scene's folder", quoted(name)))
         })?;
-        let bytes = read_regular(&self.base.join(relative), self.left, at)?;
+        let path = self.base.join(relative);
+        let bytes = read_regular(&path, self.left, at);
+        if !self.asked.contains(&path) {
+            self.asked.push(path);
+        }
+        let bytes = bytes?;
         self.left -= bytes.len() as u64;
         Ok(bytes)
     }

@@ -1,6 +1,6 @@
 //! The door: a path in, a scene out.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use glam::{Vec3, Vec4};
 
@@ -16,6 +16,8 @@ pub struct Loaded {
     pub scene: Scene,
     /// One line each: what was ignored, repaired or dropped.
     pub warnings: Vec<String>,
+    /// The files that it is made of: the scene's own first, then those it refers to, also where they could not be read.
+    pub files: Vec<PathBuf>,
 }
 
 /// What to load of a file.
@@ -80,5 +82,6 @@ fn read(path: &Path, options: &LoadOptions) -> Outcome<Loaded> {
         warnings.push("the scene shows no triangles".into());
     }
     scene.name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-    Ok(Loaded { scene, warnings: warnings.into_lines() })
+    let files = std::iter::once(path.to_owned()).chain(folder.into_asked()).collect();
+    Ok(Loaded { scene, warnings: warnings.into_lines(), files })
 }

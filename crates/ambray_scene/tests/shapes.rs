@@ -70,7 +70,7 @@ fn shapes_of_all_types() {
             {"extensions":{"AMBRAY_implicit_surface":{"shape":5}}},
             {"extensions":{"AMBRAY_implicit_surface":{"shape":1,"material":0}}},
             {"extensions":{"KHR_physics_rigid_bodies":{"collider":{"geometry":{"shape":2}}}}}]"#;
-    let Loaded { scene, warnings } = load(rest);
+    let Loaded { scene, warnings, .. } = load(rest);
     assert_eq!(scene.shapes.len(), 5, "each is there once, and only what is shown");
     assert_eq!(scene.shapes[0], Shape::Box { half_extents: Vec3::new(0.5, 1.0, 1.5) });
     assert_eq!(scene.shapes[1], Shape::Sphere { radius: 2.0 });
@@ -166,7 +166,7 @@ fn singular_and_textured_shapes_are_told_about() {
     let rest = r#""extensions":{"KHR_implicit_shapes":{"shapes":[{"type":"sphere"}]}},
         "images":[{"uri":"x.png"}],"textures":[{"source":0}],
         "nodes":[{"scale":[0,1,1],"extensions":{"AMBRAY_implicit_surface":{"shape":0}}}]"#;
-    let Loaded { scene, warnings } = load(rest);
+    let Loaded { scene, warnings, .. } = load(rest);
     assert!(scene.shape_instances.is_empty());
     assert_eq!(
         warnings,
@@ -184,7 +184,7 @@ fn checkers_and_kinds_of_materials() {
         {"emissiveFactor":[1,0,0]},
         {"emissiveFactor":[1,0,0],"extensions":{"AMBRAY_material_checker":{"colorFactor":[0.5,2,0],"size":0.25}}},
         {"extensions":{"KHR_materials_unlit":{},"AMBRAY_material_checker":{}}}]"#;
-    let Loaded { scene, warnings } = load(rest);
+    let Loaded { scene, warnings, .. } = load(rest);
     let kinds: Vec<_> = scene.materials.iter().map(Material::kind).collect();
     use MaterialKind::{Checker as Checkered, Emissive, Lit, Unlit};
     assert_eq!(kinds, [Lit, Emissive, Checkered, Unlit]);

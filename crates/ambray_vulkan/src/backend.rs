@@ -427,6 +427,11 @@ impl VulkanBackend {
         Ok(times)
     }
 
+    /// Forgets earlier frames: the next one begins a sequence.
+    pub fn forget_frames(&self) {
+        self.state().forget_frames();
+    }
+
     pub(crate) fn state(&self) -> MutexGuard<'_, State> {
         // Everything in the state is made anew or overwritten for each frame, so a panic of another thread does not matter.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)

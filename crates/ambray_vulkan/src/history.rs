@@ -88,6 +88,11 @@ impl History {
         self.capacity == pixels
     }
 
+    /// No earlier frame can be continued any more.
+    pub(crate) fn forget(&mut self) {
+        self.earlier = None;
+    }
+
     /// Begins the next frame: what it reads and writes. Until it has [ended](Self::end), no frame can be continued.
     pub(crate) fn begin(&mut self, settings: &Settings, view: &View, scene_moved: bool) -> TemporalConstants {
         let earlier = self.earlier.take();

@@ -157,6 +157,13 @@ impl State {
         }
     }
 
+    /// Forgets earlier frames: the next one begins a sequence.
+    pub(crate) fn forget_frames(&mut self) {
+        if let Some(history) = &mut self.history {
+            history.forget();
+        }
+    }
+
     /// What the last frame left, where light is accumulated.
     pub(crate) const fn history(&self) -> Option<&History> {
         self.history.as_ref()

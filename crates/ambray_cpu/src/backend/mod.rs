@@ -132,6 +132,11 @@ impl CpuBackend {
         })
     }
 
+    /// Forgets earlier frames: the next one begins a sequence.
+    pub fn forget_frames(&self) {
+        *self.history() = None;
+    }
+
     fn history(&self) -> MutexGuard<'_, Option<History>> {
         // Whole or empty at any time, so a panic of another thread does not matter.
         self.history.lock().unwrap_or_else(PoisonError::into_inner)

@@ -156,7 +156,7 @@ fn what_lacks_a_part_is_refused() {
 #[test]
 fn what_is_ignored() {
     let check = |text: String, warnings: &[&str]| {
-        let Loaded { scene, warnings: found } = load_text(&text);
+        let Loaded { scene, warnings: found, .. } = load_text(&text);
         assert!(scene.rig.is_none(), "nothing moves");
         assert_eq!(found, warnings);
     };
@@ -184,7 +184,7 @@ fn what_is_ignored() {
 
 #[test]
 fn what_is_read() {
-    let Loaded { scene, warnings } = load_text(&one(3, "translation", TIMES, NINE, "CUBICSPLINE"));
+    let Loaded { scene, warnings, .. } = load_text(&one(3, "translation", TIMES, NINE, "CUBICSPLINE"));
     assert!(warnings.is_empty(), "{warnings:?}");
     let rig = scene.rig.expect("a rig");
     let channel = &rig.clips[0].channels[0];

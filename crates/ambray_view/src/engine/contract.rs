@@ -113,6 +113,8 @@ pub struct Rendered {
     pub statistics: Option<Arc<Statistics>>,
     /// What it took.
     pub stats: FrameStats,
+    /// Bytes of the frame, which is kept.
+    pub frame_bytes: u64,
 }
 
 /// A − B of the plane that is shown.

@@ -1,117 +1,112 @@
 //! The thread that owns the renderer.
 
-use std::{
-    sync::{Arc, mpsc},
-    time::Instant,
+use std::{sync::Arc, time::Instant};
+
+use ambray::{Control, RenderError, Renderer};
+
+use super::{
+    contract::Event,
+    gallery::{Gallery, Shot},
+    guard::caught,
+    inbox::{Mail, SharedInbox},
+    loader::Ready,
+    outbox::Outbox,
+    plan::{Schedule, Step},
+    throttle::Throttle,
 };
 
-use ambray::{Aov, Control, Frame, Renderer, scene};
-
-use super::contract::{
-    AnimationInfo, CameraInfo, Content, EngineOptions, Event, Level, Opened, Order, Pixels, Rendered,
-};
-use crate::model::{SceneRef, Side};
-
-/// What the window asks for.
+/// Renders what is wanted.
 #[derive(Debug)]
-pub(super) enum Request {
-    Open(SceneRef),
-    Show(Box<Order>),
+pub(super) struct Worker {
+    pub(super) inbox: SharedInbox,
+    pub(super) outbox: Outbox,
+    pub(super) gallery: Arc<Gallery>,
+    pub(super) threads: usize,
+    pub(super) open: Option<Open>,
+    pub(super) schedule: Schedule,
 }
 
-/// Works until nobody asks any more.
-pub(super) fn run(options: &EngineOptions, requests: &mpsc::Receiver<Request>, events: &mpsc::Sender<Event>) {
-    let mut renderer = None;
-    let mut done: Option<Order> = None;
-    while let Ok(first) = requests.recv() {
-        let mut order = None;
-        for request in std::iter::once(first).chain(requests.try_iter()) {
-            match request {
-                Request::Open(scene) => match open(options, &scene) {
-                    Ok((made, opened)) => {
-                        renderer = Some(made);
-                        done = None;
-                        let _ = events.send(Event::Opened(Arc::new(opened)));
-                    }
-                    Err(error) => {
-                        let message = format!("{error:#}");
-                        let _ = events.send(Event::OpenFailed { scene, message });
-                    }
-                },
-                Request::Show(latest) => order = Some(*latest),
-            }
-        }
-        if let (Some(renderer), Some(order)) = (&mut renderer, order)
-            && done.as_ref() != Some(&order)
-        {
-            for side in Side::ALL {
-                if let Some(settings) = &order.sides[side as usize] {
-                    match renderer.render(settings, Control::default()) {
-                        Ok(frame) => {
-                            let _ = events
-                                .send(Event::Picture(Box::new(rendered(side, settings, order.aov, frame))));
-                        }
-                        Err(error) => {
-                            let _ = events.send(Event::Refused { side, messages: vec![error.to_string()] });
-                        }
-                    }
-                }
-            }
-            done = Some(order);
-        }
-        (options.wake.0)();
+/// The scene that is open.
+#[derive(Debug)]
+pub(super) struct Open {
+    pub(super) renderer: Renderer,
+    /// What pictures say they show.
+    pub(super) label: String,
+}
+
+impl Worker {
+    pub(super) fn new(inbox: SharedInbox, outbox: Outbox, gallery: Arc<Gallery>, threads: usize) -> Self {
+        Self { inbox, outbox, gallery, threads, open: None, schedule: Schedule::default() }
     }
-}
 
-fn open(options: &EngineOptions, scene: &SceneRef) -> anyhow::Result<(Renderer, Opened)> {
-    let start = Instant::now();
-    let (made, warnings) = match scene.path.to_str() {
-        Some("atrium") => (scene::atrium::atrium(), Vec::new()),
-        Some("banner") => (scene::moving::banner(), Vec::new()),
-        Some("flock") => (scene::moving::flock(), Vec::new()),
-        _ => {
-            let loaded = scene::load_with(&scene.path, &scene::LoadOptions::default())?;
-            (loaded.scene, loaded.warnings)
+    /// Works until all is over.
+    pub(super) fn run(&mut self) {
+        let mut step = None;
+        while let Some(mail) = self.inbox.take(step.is_none()) {
+            self.read(mail);
+            step = self.open.is_some().then(|| self.schedule.next()).flatten();
+            if let Some(step) = &step
+                && self.inbox.begin(step)
+            {
+                self.render(step);
+                self.inbox.end();
+            }
         }
-    };
-    let load_time = start.elapsed();
-    let renderer = Renderer::open(made, &options.renderer, Control::default())?;
-    let scene_info = renderer.scene();
-    let named = |name: &str, i: usize| if name.is_empty() { i.to_string() } else { name.to_owned() };
-    let cameras = scene_info.cameras.iter().enumerate();
-    let clips = scene_info.rig.iter().flat_map(|rig| rig.clips.iter().enumerate());
-    let opened = Opened {
-        scene: scene.clone(),
-        warnings,
-        load_time,
-        build: renderer.build_stats(),
-        machine: renderer.machine(),
-        cameras: cameras.map(|(i, camera)| CameraInfo { name: named(&camera.name, i) }).collect(),
-        animations: clips
-            .map(|(i, clip)| AnimationInfo { name: named(&clip.name, i), duration: clip.duration })
-            .collect(),
-        bounds: scene_info.bounds().unwrap_or_default(),
-        is_reload: false,
-    };
-    Ok((renderer, opened))
-}
+    }
 
-fn rendered(side: Side, settings: &ambray::settings::Settings, aov: Aov, frame: Frame) -> Rendered {
-    let linear = frame.plane(Aov::Beauty);
-    let rgba = linear
-        .chunks_exact(3)
-        .flat_map(|c| [c[0], c[1], c[2], 1.0])
-        .map(|v| (v.min(1.0).sqrt() * 255.0) as u8);
-    let pixels = Arc::new(Pixels { width: frame.width, height: frame.height, rgba: rgba.collect() });
-    Rendered {
-        side,
-        settings: settings.clone(),
-        aov,
-        view: frame.view.clone(),
-        level: Level { scale: 1.0, spp: settings.spp, is_final: true },
-        frames: 1,
-        stats: frame.stats,
-        content: Content::Host { frame: Arc::new(frame), pixels },
-        statistics: None,
+    /// Takes in what has come.
+    fn read(&mut self, mail: Mail) {
+        if let Some(ready) = mail.ready {
+            self.reopen(*ready);
+        }
+        if let Some(order) = mail.order {
+            self.schedule.take(&order);
+            self.gallery.look(&order);
+        }
+    }
+
+    fn reopen(&mut self, ready: Ready) {
+        let Ready { renderer, opened, label } = ready;
+        self.schedule.clear();
+        self.gallery.reopen(opened);
+        let old = self.open.replace(Open { renderer, label });
+        // A large scene takes its time to be freed.
+        rayon::spawn(move || drop(old));
+    }
+
+    fn render(&mut self, step: &Step) {
+        let Some(open) = &mut self.open else { return };
+        self.schedule.begin();
+        let (outbox, side) = (&self.outbox, step.side);
+        let throttle = Throttle::new();
+        let [from, to] = step.share;
+        let progress = |share: f32| {
+            let share = from + (to - from) * share;
+            throttle.report(share, |share| outbox.send(Event::Progress { side, share }));
+        };
+        let control = Control { progress: &progress, cancel: self.inbox.cancel(), threads: self.threads };
+        let start = Instant::now();
+        let outcome = caught(|| {
+            if step.begins {
+                open.renderer.forget_frames();
+            }
+            open.renderer.render(&step.settings, control)
+        });
+        let messages = match outcome {
+            Ok(Ok(frame)) => {
+                self.schedule.done(step, start.elapsed().as_secs_f64());
+                if step.is_shown {
+                    let (settings, level, frames) = (step.settings.clone(), step.level, step.frames);
+                    self.gallery.hang(Shot { side, settings, level, frames, frame: Arc::new(frame) });
+                }
+                return;
+            }
+            Ok(Err(RenderError::Cancelled)) => return,
+            Ok(Err(RenderError::Settings(errors))) => errors.iter().map(ToString::to_string).collect(),
+            Ok(Err(error)) => vec![error.to_string()],
+            Err(panic) => vec![panic],
+        };
+        self.schedule.refuse(step);
+        self.outbox.send(Event::Refused { side, messages });
     }
 }

@@ -1,0 +1,75 @@
+//! What is to be done for one side, and how far it is.
+
+use ambray::settings::{Settings, Temporal};
+
+use super::{levels, rate::Rate};
+use crate::engine::contract::Level;
+
+/// Most frames of a view that stands still.
+pub(super) const FRAMES: u32 = 256;
+
+/// What of `settings` decides a frame; the rest decides how it is shown.
+pub(in crate::engine) fn frame_settings(settings: &Settings) -> Settings {
+    let any = Settings::default();
+    Settings {
+        exposure: any.exposure,
+        tone_map: any.tone_map,
+        ramp: any.ramp,
+        range: any.range,
+        ..settings.clone()
+    }
+}
+
+/// Whether two settings are the same, NaN among them, which no picture can be made of.
+pub(in crate::engine) fn is_same(a: &Settings, b: &Settings) -> bool {
+    a == b || format!("{a:?}") == format!("{b:?}")
+}
+
+/// A picture to be made, and how far it is.
+#[derive(Clone, Debug)]
+pub(super) struct Work {
+    /// What of the settings decides the frame.
+    pub(super) settings: Settings,
+    /// The levels that are still to be rendered, the next one first.
+    pub(super) left: Vec<Level>,
+    /// The finest level that there is.
+    pub(super) shown: Option<Level>,
+    /// Frames whose mean the last picture is, where light accumulates.
+    pub(super) frames: u32,
+    /// Whether nothing can be rendered with these settings.
+    pub(super) is_refused: bool,
+}
+
+impl Work {
+    pub(super) fn new(settings: Settings) -> Self {
+        Self { settings, left: Vec::new(), shown: None, frames: 0, is_refused: false }
+    }
+
+    /// Whether light accumulates over frames.
+    pub(super) fn accumulates(&self) -> bool {
+        self.settings.temporal == Temporal::On
+    }
+
+    /// Plans what is left to be done; only a first picture if that `is_moving`.
+    pub(super) fn plan(&mut self, rate: Rate, is_moving: bool) {
+        let mut levels = levels::plan(self.settings.size, self.settings.spp, rate);
+        if is_moving {
+            levels.truncate(1);
+        }
+        if let Some(shown) = &self.shown {
+            // While something moves, any picture will do.
+            levels.retain(|level| !is_moving && is_finer(level, shown));
+        }
+        self.left = levels;
+    }
+
+    /// Whether more frames are to be accumulated.
+    pub(super) fn goes_on(&self) -> bool {
+        let is_complete = self.shown.is_some_and(|level| level.is_final);
+        self.left.is_empty() && is_complete && self.accumulates() && self.frames < FRAMES
+    }
+}
+
+fn is_finer(a: &Level, b: &Level) -> bool {
+    (a.is_final, a.scale, a.spp) > (b.is_final, b.scale, b.spp)
+}

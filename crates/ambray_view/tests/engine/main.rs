@@ -1,0 +1,6 @@
+//! The engine as the window uses it, against the library.
+
+mod common;
+mod orders;
+mod scenes;
+mod sequences;
