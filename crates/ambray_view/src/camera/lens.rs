@@ -58,7 +58,7 @@ impl Viewpoint {
 
 #[cfg(test)]
 mod tests {
-    use super::{super::tests::somewhere, *};
+    use super::super::tests::somewhere;
 
     #[test]
     fn the_target_keeps_its_size() {

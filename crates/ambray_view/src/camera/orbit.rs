@@ -15,7 +15,7 @@ impl Viewpoint {
     /// Turns around the target: the camera goes to the left and up by these angles, radians. It stops short of the poles.
     #[must_use]
     pub fn orbited(self, left: f32, up: f32) -> Self {
-        let (forward, axis) = self.turned(-left, -up);
+        let (forward, axis) = self.turned(left, -up);
         Self { position: self.target - self.distance() * forward, up: axis, ..self }
     }
 

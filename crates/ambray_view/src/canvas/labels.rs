@@ -62,6 +62,12 @@ pub(super) fn difference(difference: &Difference) -> String {
     format!("A \u{2212} B: RMSE {rmse:.5}, bias {bias:+.5}, largest {largest:.4}")
 }
 
+/// Says how far the picture is magnified, and how that ends.
+pub(super) fn zoom(painter: &Painter, canvas: Rect, factor: f32) {
+    let text = format!("{factor:.1} \u{d7}   0 shows all");
+    paint(painter, canvas.shrink(MARGIN).center_top(), Align2::CENTER_TOP, &text);
+}
+
 /// Writes words with a dark ground; gives the place that they take.
 pub(super) fn paint(painter: &Painter, at: Pos2, anchor: Align2, text: &str) -> Rect {
     let galley = painter.layout_no_wrap(text.to_owned(), FontId::proportional(12.5), Color32::from_gray(235));

@@ -9,9 +9,12 @@ mod placement;
 mod split;
 mod textures;
 
+#[cfg(test)]
+mod tests;
+
 use ambray::settings::Size;
 use egui::{
-    CentralPanel, CursorIcon, Id, Key, Modifiers, PointerButton, Rect, Response, Sense, Ui, WidgetInfo,
+    CentralPanel, CursorIcon, Key, Modifiers, PointerButton, Rect, Response, Sense, Ui, WidgetInfo,
     WidgetType,
 };
 use glam::Vec3;
@@ -74,6 +77,9 @@ impl Canvas {
             split::paint(ui.painter(), canvas, split::place(canvas, model.divider, scale));
         }
         pictures::label(ui.painter(), canvas, model, shown);
+        if !self.zoom.is_whole() {
+            labels::zoom(ui.painter(), canvas, self.zoom.factor());
+        }
         self.cross(ui, canvas, model, shown);
     }
 

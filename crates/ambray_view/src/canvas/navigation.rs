@@ -1,6 +1,6 @@
 //! What hand and keys do to the camera.
 
-use egui::{Key, Modifiers, PointerButton, Pos2, Response, Ui, Vec2};
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, Response, Ui, Vec2};
 use glam::Vec3;
 
 use crate::camera::{AxisView, Fly, Lens, Thrust, Transition, Viewpoint};
@@ -194,7 +194,13 @@ fn notches(ui: &Ui) -> f32 {
     (delta.x + delta.y) / line.max(1.0)
 }
 
-/// Whether `key` was pressed with exactly `modifiers`.
+/// Whether `key` was pressed with exactly `modifiers`, which nobody else may take for theirs then.
 pub(super) fn pressed(input: &mut egui::InputState, modifiers: Modifiers, key: Key) -> bool {
-    input.modifiers == modifiers && input.consume_key(modifiers, key)
+    let exactly = |event: &Event| match event {
+        Event::Key { key: other, pressed: true, modifiers: held, .. } => *other == key && *held == modifiers,
+        _ => false,
+    };
+    let is_pressed = input.events.iter().any(exactly);
+    input.events.retain(|event| !exactly(event));
+    is_pressed
 }

@@ -7,7 +7,7 @@ use super::{
     labels::{self, MARGIN},
     placement::Placement,
     split,
-    textures::{self, HostTexture, PictureTextures, Scaling},
+    textures::{HostTexture, PictureTextures, Scaling},
 };
 use crate::{
     app::Shown,

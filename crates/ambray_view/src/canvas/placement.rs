@@ -8,7 +8,7 @@ const LARGEST_PIXEL: f32 = 64.0;
 
 /// How a picture comes to the size of the canvas.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fit {
+pub(super) enum Fit {
     /// It covers the canvas; its size was made for that.
     Fill,
     /// It keeps its shape; its pixels become whole numbers of pixels of the window where it is smaller.
@@ -17,7 +17,7 @@ pub enum Fit {
 
 /// The part of the picture that the user looks at.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Zoom {
+pub(super) struct Zoom {
     /// Magnification, at least 1.
     factor: f32,
     /// The place in the middle of the canvas, share of the picture.
@@ -32,19 +32,17 @@ impl Default for Zoom {
 
 impl Zoom {
     /// Whether the whole picture is shown.
-    #[must_use]
-    pub fn is_whole(&self) -> bool {
+    pub(super) fn is_whole(&self) -> bool {
         self.factor <= 1.0
     }
 
     /// Magnification over the whole picture.
-    #[must_use]
-    pub const fn factor(&self) -> f32 {
+    pub(super) const fn factor(&self) -> f32 {
         self.factor
     }
 
     /// Magnifies by `factor`; what is at `fixed` stays there.
-    pub fn magnify(&mut self, placement: &Placement, factor: f32, fixed: Pos2) {
+    pub(super) fn magnify(&mut self, placement: &Placement, factor: f32, fixed: Pos2) {
         let largest = (LARGEST_PIXEL / placement.whole_scale()).max(1.0);
         let wanted = (self.factor * factor).clamp(1.0, largest);
         let share = placement.share(fixed);
@@ -55,7 +53,7 @@ impl Zoom {
     }
 
     /// Moves the picture by `delta` points.
-    pub fn pan(&mut self, placement: &Placement, delta: Vec2) {
+    pub(super) fn pan(&mut self, placement: &Placement, delta: Vec2) {
         self.middle -= delta / placement.picture.size();
         self.clamp(placement.canvas.size(), placement.picture.size());
     }
@@ -69,11 +67,11 @@ impl Zoom {
 
 /// Where the picture lies.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Placement {
+pub(super) struct Placement {
     /// The canvas, points, on whole pixels of the window.
-    pub canvas: Rect,
+    pub(super) canvas: Rect,
     /// The picture, points; it reaches beyond the canvas where it is magnified.
-    pub picture: Rect,
+    pub(super) picture: Rect,
     /// Pixels of the picture as it was asked for.
     size: Size,
     pixels_per_point: f32,
@@ -82,8 +80,7 @@ pub struct Placement {
 
 impl Placement {
     /// Puts a picture of `size` pixels into `canvas`.
-    #[must_use]
-    pub fn new(canvas: Rect, pixels_per_point: f32, size: Size, fit: Fit, zoom: &Zoom) -> Self {
+    pub(super) fn new(canvas: Rect, pixels_per_point: f32, size: Size, fit: Fit, zoom: &Zoom) -> Self {
         let canvas = aligned(canvas, pixels_per_point);
         let room = canvas.size() * pixels_per_point;
         let pixels = vec2(size.width as f32, size.height as f32);
@@ -106,21 +103,13 @@ impl Placement {
         Self { canvas, picture, size, pixels_per_point, factor: zoom.factor }
     }
 
-    /// The part of the picture that can be seen, points.
-    #[must_use]
-    pub fn visible(&self) -> Rect {
-        self.picture.intersect(self.canvas)
-    }
-
     /// Pixels of the window to a point.
-    #[must_use]
-    pub const fn pixels_per_point(&self) -> f32 {
+    pub(super) const fn pixels_per_point(&self) -> f32 {
         self.pixels_per_point
     }
 
     /// Pixels of the window to a pixel of the picture as it was asked for, a side.
-    #[must_use]
-    pub fn scale(&self) -> f32 {
+    pub(super) fn scale(&self) -> f32 {
         let scale = self.picture.size() * self.pixels_per_point
             / vec2(self.size.width as f32, self.size.height as f32);
         scale.min_elem()
@@ -132,14 +121,12 @@ impl Placement {
     }
 
     /// Place of the window as a share of the picture; outside it beyond 0 to 1.
-    #[must_use]
-    pub fn share(&self, place: Pos2) -> Vec2 {
+    pub(super) fn share(&self, place: Pos2) -> Vec2 {
         (place - self.picture.min) / self.picture.size()
     }
 
     /// The pixel at a place of the window, of a picture of `size` pixels.
-    #[must_use]
-    pub fn pixel_at(&self, place: Pos2, (width, height): (u32, u32)) -> Option<(u32, u32)> {
+    pub(super) fn pixel_at(&self, place: Pos2, (width, height): (u32, u32)) -> Option<(u32, u32)> {
         let share = self.share(place);
         let is_inside = self.canvas.contains(place) && share.min_elem() >= 0.0 && share.max_elem() < 1.0;
         let index = |share: f32, end: u32| ((share * end as f32) as u32).min(end - 1);
@@ -147,14 +134,12 @@ impl Placement {
     }
 
     /// Place in the window of a place in a picture of `size` pixels, in pixels from its top left corner.
-    #[must_use]
-    pub fn place(&self, at: Vec2, (width, height): (u32, u32)) -> Pos2 {
+    pub(super) fn place(&self, at: Vec2, (width, height): (u32, u32)) -> Pos2 {
         self.picture.min + at / vec2(width as f32, height as f32) * self.picture.size()
     }
 
     /// Where a pixel of a picture of `size` pixels is shown.
-    #[must_use]
-    pub fn pixel_rect(&self, (x, y): (u32, u32), size: (u32, u32)) -> Rect {
+    pub(super) fn pixel_rect(&self, (x, y): (u32, u32), size: (u32, u32)) -> Rect {
         let corner = vec2(x as f32, y as f32);
         Rect::from_min_max(self.place(corner, size), self.place(corner + Vec2::splat(1.0), size))
     }
