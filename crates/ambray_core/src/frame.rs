@@ -1,6 +1,6 @@
 //! A rendered frame: planes of one value a pixel, row by row from the top.
 
-use std::time::Duration;
+use std::{ops::Range, time::Duration};
 
 use glam::{Vec2, Vec3, Vec4};
 use serde::Serialize;
@@ -223,7 +223,21 @@ impl Frame {
     /// The values of a plane, channel after channel within a pixel ([`Aov::channels`]), pixels row by row from the top.
     #[must_use]
     pub fn plane(&self, aov: Aov) -> Vec<f32> {
-        let pixels = 0..self.beauty.len();
+        self.values(aov, 0..self.beauty.len())
+    }
+
+    /// The values of a plane at pixel `(x, y)`, channel after channel.
+    ///
+    /// # Panics
+    /// If the pixel is outside the picture.
+    #[must_use]
+    pub fn pixel(&self, aov: Aov, (x, y): (u32, u32)) -> Vec<f32> {
+        assert!(x < self.width && y < self.height, "pixel {x}, {y} is outside the picture");
+        let i = y as usize * self.width as usize + x as usize;
+        self.values(aov, i..i + 1)
+    }
+
+    fn values(&self, aov: Aov, pixels: Range<usize>) -> Vec<f32> {
         let vectors = |f: &dyn Fn(usize) -> Vec3| pixels.clone().flat_map(|i| f(i).to_array()).collect();
         let scalars = |f: &dyn Fn(usize) -> f32| pixels.clone().map(f).collect();
         let index = |id: u32| if id == u32::MAX { -1.0 } else { id as f32 };

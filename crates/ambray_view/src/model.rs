@@ -105,6 +105,8 @@ pub struct Model {
     pub resolution: Resolution,
     /// The animation.
     pub playback: Playback,
+    /// Whether the pixel inspector is open.
+    pub is_inspecting: bool,
     /// Whether the camera or a slider is being dragged: quick pictures are worth more than fine ones.
     pub is_moving: bool,
 }
@@ -122,6 +124,7 @@ impl Model {
             aov: Aov::Beauty,
             resolution: Resolution::Window(1.0),
             playback: Playback::default(),
+            is_inspecting: false,
             is_moving: false,
         }
     }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::{
-    engine::{Difference, Event, Opened, Rendered},
+    engine::{Difference, Event, Inspected, Opened, Rendered},
     model::SceneRef,
 };
 
@@ -49,6 +49,8 @@ pub struct Shown {
     pub sides: [Option<Rendered>; 2],
     /// Both compared.
     pub difference: Option<Difference>,
+    /// What the pixel did that was asked for last.
+    pub inspected: Option<Arc<Inspected>>,
     /// Share of the picture under way, of each side.
     pub progress: [Option<f32>; 2],
     /// Why a side cannot be rendered.
@@ -82,6 +84,7 @@ impl Shown {
                 self.sides[side] = Some(*rendered);
             }
             Event::Difference(difference) => self.difference = Some(*difference),
+            Event::Inspected(inspected) => self.inspected = Some(Arc::from(inspected)),
             Event::Progress { side, share } => self.progress[side as usize] = Some(share),
             Event::Refused { side, messages } => self.refused[side as usize] = messages,
             Event::Exporting { share } => self.export = Some(share),

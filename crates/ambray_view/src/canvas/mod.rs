@@ -1,6 +1,7 @@
 //! The canvas: the picture with everything that is drawn on it and done in it.
 
 mod cross;
+mod inspector;
 mod keys;
 mod labels;
 mod navigation;
@@ -25,6 +26,7 @@ use crate::{
     engine::{Engine, Rendered},
     model::{Comparison, Model, Resolution, Side},
 };
+use inspector::Inspector;
 use navigation::{Navigation, Surroundings, pressed};
 use pictures::{Pictures, frame_of};
 use placement::{Fit, Placement, Zoom};
@@ -38,6 +40,7 @@ pub struct Canvas {
     pictures: Pictures,
     zoom: Zoom,
     navigation: Navigation,
+    inspector: Inspector,
     /// Whether the camera moved in the last frame.
     was_moving: bool,
 }
@@ -53,7 +56,7 @@ impl Canvas {
         CentralPanel::no_frame().show(ui, |ui| self.show_inside(ui, model, shown, engine));
     }
 
-    fn show_inside(&mut self, ui: &mut Ui, model: &mut Model, shown: &mut Shown, _engine: &Engine) {
+    fn show_inside(&mut self, ui: &mut Ui, model: &mut Model, shown: &mut Shown, engine: &Engine) {
         let scale = ui.ctx().pixels_per_point();
         let canvas = placement::aligned(ui.max_rect(), scale);
         let response = ui.allocate_rect(canvas, Sense::click_and_drag());
@@ -81,6 +84,7 @@ impl Canvas {
             labels::zoom(ui.painter(), canvas, self.zoom.factor());
         }
         self.cross(ui, canvas, model, shown);
+        self.inspector.show(ui, &response, takes_keys, (model, shown, engine), &placement);
     }
 
     /// Zoom into the pixels of the picture.

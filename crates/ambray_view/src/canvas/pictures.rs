@@ -1,5 +1,7 @@
 //! Draws the pictures of both sides: one, both beside each other, or their difference.
 
+use std::sync::Arc;
+
 use ambray::Frame;
 use egui::{Align2, Color32, Painter, Rect, Ui};
 
@@ -43,10 +45,9 @@ impl Pictures {
         };
         match (model.comparison, &shown.difference) {
             (Comparison::Split, _) => {
-                let x = split::place(placement.canvas, model.divider, placement.pixels_per_point());
-                let [left, right] = split::parts(placement.canvas, x);
-                side(Side::A, left);
-                side(Side::B, right);
+                for which in Side::ALL {
+                    side(which, part_of(model, placement, which));
+                }
             }
             (Comparison::Difference, Some(difference)) => {
                 let pixels = &difference.pixels;
@@ -70,8 +71,22 @@ impl Pictures {
     }
 }
 
+/// The part of the canvas that shows the picture of `side`.
+pub(super) fn part_of(model: &Model, placement: &Placement, side: Side) -> Rect {
+    if model.comparison != Comparison::Split {
+        return placement.canvas;
+    }
+    let x = split::place(placement.canvas, model.divider, placement.pixels_per_point());
+    split::parts(placement.canvas, x)[side as usize]
+}
+
 /// The planes of a picture, where the processor has them.
 pub(super) fn frame_of(rendered: &Rendered) -> Option<&Frame> {
+    shared_frame_of(rendered).map(AsRef::as_ref)
+}
+
+/// The same, to be kept.
+pub(super) const fn shared_frame_of(rendered: &Rendered) -> Option<&Arc<Frame>> {
     match &rendered.content {
         Content::Host { frame, .. } => Some(frame),
     }

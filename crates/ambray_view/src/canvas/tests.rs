@@ -8,12 +8,12 @@ use ambray::{
     settings::{Settings, Size},
 };
 use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2, TouchPhase, Vec2, pos2, vec2};
-use egui_kittest::Harness;
+use egui_kittest::{Harness, kittest::Queryable as _};
 
 use super::*;
 use crate::{
     camera::Lens,
-    engine::{Content, EngineOptions, Level, Opened, Pixels, Wake},
+    engine::{Content, EngineOptions, Inspected, Level, Opened, Pixels, Wake},
     model::SceneRef,
 };
 
@@ -25,6 +25,7 @@ struct State {
     model: Model,
     shown: Shown,
     engine: Engine,
+    renderer: Renderer,
 }
 
 impl State {
@@ -55,7 +56,8 @@ fn harness() -> Harness<'static, State> {
         keeps_on_device: false,
         wake,
     });
-    let state = State { canvas: Canvas::default(), model: Model::new(scene, settings), shown, engine };
+    let state =
+        State { canvas: Canvas::default(), model: Model::new(scene, settings), shown, engine, renderer };
     let show = |ui: &mut Ui, state: &mut State| {
         state.canvas.show(ui, &mut state.model, &mut state.shown, &state.engine);
     };
@@ -357,4 +359,90 @@ fn another_camera_of_the_file_is_waited_for() {
     let mut harness = harness();
     harness.state_mut().model.of_mut(Side::A).camera = ambray::settings::Auto::Value("1".to_owned());
     assert_eq!(viewpoint(&harness.state().model, &harness.state().shown), None);
+}
+
+#[test]
+fn the_inspector_shows_values_under_the_cursor() {
+    let mut harness = harness();
+    harness.key_press(Key::I);
+    harness.event(Event::PointerMoved(pos2(310.0, 30.0)));
+    harness.run_steps(3);
+    assert!(harness.state().model.is_inspecting);
+    assert!(harness.query_by_label_contains("pixel 302, 22 of").is_some());
+    assert!(harness.query_by_label("near-radiance-raw").is_some());
+    harness.key_press(Key::I);
+    harness.run_steps(3);
+    assert!(harness.query_by_label_contains("pixel 302, 22 of").is_none());
+}
+
+#[test]
+fn a_pinned_pixel_stays_and_tells_what_it_did() {
+    let mut harness = harness();
+    hold(&mut harness, Modifiers::ALT);
+    let place = pos2(310.0, 30.0);
+    harness.event(Event::PointerMoved(place));
+    harness.step();
+    for pressed in [true, false] {
+        button(&harness, place, PointerButton::Primary, pressed, Modifiers::ALT);
+        harness.step();
+    }
+    hold(&mut harness, Modifiers::NONE);
+    harness.event(Event::PointerMoved(pos2(300.0, 150.0)));
+    harness.run_steps(2);
+    assert!(harness.query_by_label_contains("pixel 302, 22 of").is_some(), "it is kept");
+    assert!(harness.query_by_label_contains("Waiting").is_some());
+
+    let state = harness.state_mut();
+    let frame = frame_of(state.shown.sides[0].as_ref().expect("rendered")).expect("on the host").clone();
+    let settings = state.model.of(Side::A);
+    let inspected = state.renderer.inspect(settings, &frame, (302, 22), Control::default());
+    state.shown.inspected = Some(Arc::new(Inspected {
+        side: Side::A,
+        pixel: (302, 22),
+        inspection: inspected.expect("is in the picture"),
+    }));
+    harness.run_steps(3);
+    assert!(harness.query_by_label_contains("rays of all types, sample class").is_some());
+    assert!(harness.query_by_label_contains("Filter taps: ").is_some());
+    assert!(harness.query_by_label_contains("Rays (1)").is_some());
+
+    harness.key_press(Key::Escape);
+    harness.run_steps(2);
+    assert!(harness.query_by_label_contains("Filter taps: ").is_none());
+}
+
+#[test]
+fn what_a_pixel_did_is_drawn_on_the_picture() {
+    let mut harness = harness();
+    let lines = |harness: &Harness<'_, State>| {
+        let shapes = harness.output().shapes.iter();
+        shapes.filter(|clipped| matches!(clipped.shape, egui::Shape::LineSegment { .. })).count()
+    };
+    let state = harness.state_mut();
+    let settings =
+        Settings { spp: 64, thin: ambray::settings::Thin::Sheet, ..state.model.of(Side::A).clone() };
+    let frame = state.renderer.render(&settings, Control::default()).expect("renders");
+    let pixel = (160, 100);
+    let inspection = state.renderer.inspect(&settings, &frame, pixel, Control::default()).expect("is there");
+    assert!(inspection.rays.len() == 64 && !inspection.chords.is_empty());
+    for side in Side::ALL {
+        *state.model.of_mut(side) = settings.clone();
+        state.shown.sides[side as usize] = Some(rendered(side, &settings, &frame));
+    }
+    harness.step();
+    let before = lines(&harness);
+    let place = CANVAS.min + vec2(160.5, 100.5);
+    hold(&mut harness, Modifiers::ALT);
+    harness.event(Event::PointerMoved(place));
+    harness.step();
+    for pressed in [true, false] {
+        button(&harness, place, PointerButton::Primary, pressed, Modifiers::ALT);
+        harness.step();
+    }
+    hold(&mut harness, Modifiers::NONE);
+    harness.state_mut().shown.inspected =
+        Some(Arc::new(Inspected { side: Side::A, pixel, inspection: inspection.clone() }));
+    harness.run_steps(2);
+    let drawn = lines(&harness) - before;
+    assert!(drawn > 64, "{drawn} lines of 64 rays with chords");
 }

@@ -2,7 +2,9 @@
 
 use std::{fmt, path::PathBuf, sync::Arc, time::Duration};
 
-use ambray::{Aov, BuildStats, Frame, FrameStats, Machine, RendererOptions, View, settings::Settings};
+use ambray::{
+    Aov, BuildStats, Frame, FrameStats, Inspection, Machine, RendererOptions, View, settings::Settings,
+};
 use glam::Vec3;
 
 use crate::model::{Comparison, SceneRef, Side};
@@ -130,6 +132,17 @@ pub struct Difference {
     pub largest: f32,
 }
 
+/// What a pixel did.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Inspected {
+    /// In the picture of which side.
+    pub side: Side,
+    /// The pixel that was asked for.
+    pub pixel: (u32, u32),
+    /// Everything that it did.
+    pub inspection: Inspection,
+}
+
 /// A camera of the scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CameraInfo {
@@ -221,6 +234,8 @@ pub enum Event {
     Picture(Box<Rendered>),
     /// The pictures of both sides compared.
     Difference(Box<Difference>),
+    /// What a pixel did, that [`Engine::inspect`](super::Engine::inspect) asked for.
+    Inspected(Box<Inspected>),
     /// The picture under way: share of its final level, 0 to 1.
     Progress {
         /// Of which side.

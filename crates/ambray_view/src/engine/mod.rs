@@ -29,8 +29,8 @@ use std::{
 };
 
 pub use contract::{
-    AnimationInfo, CameraInfo, Content, Difference, EngineOptions, Event, Export, Level, Opened, Order,
-    Pixels, Rendered, Statistics, Wake,
+    AnimationInfo, CameraInfo, Content, Difference, EngineOptions, Event, Export, Inspected, Level, Opened,
+    Order, Pixels, Rendered, Statistics, Wake,
 };
 
 use self::{
