@@ -1,11 +1,12 @@
 //! Everything that the user decides, as plain data.
 
-use std::path::PathBuf;
+use std::{collections::BTreeMap, path::PathBuf};
 
 use ambray::{
     Aov,
-    settings::{Settings, Size},
+    settings::{Auto, Settings, Size, Triple},
 };
+use serde::{Deserialize, Serialize};
 
 /// Which scene is open.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -86,6 +87,50 @@ impl Default for Playback {
     }
 }
 
+/// A place to look from, kept to come back to.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields, default)]
+pub struct Bookmark {
+    /// Camera of the file.
+    pub camera: Auto<String>,
+    /// Position, world space.
+    pub camera_position: Auto<Triple>,
+    /// Point that the camera looks at, world space.
+    pub camera_target: Auto<Triple>,
+    /// Direction that is upright in the picture.
+    pub camera_up: Auto<Triple>,
+    /// Full vertical angle of view, degrees.
+    pub vertical_fov: Auto<f32>,
+    /// Height of an orthographic view, scene units.
+    pub orthographic_height: Auto<f32>,
+}
+
+impl Bookmark {
+    /// The place that `settings` look from.
+    #[must_use]
+    pub fn of(settings: &Settings) -> Self {
+        Self {
+            camera: settings.camera.clone(),
+            camera_position: settings.camera_position.clone(),
+            camera_target: settings.camera_target.clone(),
+            camera_up: settings.camera_up.clone(),
+            vertical_fov: settings.vertical_fov.clone(),
+            orthographic_height: settings.orthographic_height.clone(),
+        }
+    }
+
+    /// Makes `settings` look from here.
+    pub fn apply(&self, settings: &mut Settings) {
+        let place = self.clone();
+        settings.camera = place.camera;
+        settings.camera_position = place.camera_position;
+        settings.camera_target = place.camera_target;
+        settings.camera_up = place.camera_up;
+        settings.vertical_fov = place.vertical_fov;
+        settings.orthographic_height = place.orthographic_height;
+    }
+}
+
 /// Everything that the user decides.
 #[derive(Clone, Debug)]
 pub struct Model {
@@ -107,6 +152,8 @@ pub struct Model {
     pub playback: Playback,
     /// Whether the pixel inspector is open.
     pub is_inspecting: bool,
+    /// Places to look from in this scene, by digit.
+    pub bookmarks: BTreeMap<u8, Bookmark>,
     /// Whether the camera or a slider is being dragged: quick pictures are worth more than fine ones.
     pub is_moving: bool,
 }
@@ -125,6 +172,7 @@ impl Model {
             resolution: Resolution::Window(1.0),
             playback: Playback::default(),
             is_inspecting: false,
+            bookmarks: BTreeMap::new(),
             is_moving: false,
         }
     }
@@ -148,6 +196,8 @@ impl Model {
             size: from.size,
             exposure: from.exposure,
             tone_map: from.tone_map,
+            ramp: from.ramp,
+            range: from.range,
             animation: from.animation,
             time: from.time,
             animation_loop: from.animation_loop,
@@ -159,6 +209,25 @@ impl Model {
             orthographic_height: from.orthographic_height,
             ..to.clone()
         };
+    }
+
+    /// Settings of the side that the panel edits.
+    #[must_use]
+    pub const fn edited(&self) -> &Settings {
+        self.of(self.editing)
+    }
+
+    /// Settings of the side that the panel edits, to be changed.
+    pub const fn edited_mut(&mut self) -> &mut Settings {
+        self.of_mut(self.editing)
+    }
+
+    /// Compares both sides, or not; without a comparison only side A can be edited.
+    pub fn compare(&mut self, comparison: Comparison) {
+        self.comparison = comparison;
+        if comparison == Comparison::Off {
+            self.editing = Side::A;
+        }
     }
 
     /// The sides that are shown.

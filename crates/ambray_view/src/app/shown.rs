@@ -1,9 +1,11 @@
 //! What the engine has delivered so far.
 
-use std::sync::Arc;
+use std::{collections::VecDeque, sync::Arc};
+
+use ambray::FrameStats;
 
 use crate::{
-    engine::{Difference, Event, Inspected, Opened, Rendered},
+    engine::{Difference, Event, Inspected, Level, Opened, Rendered},
     model::SceneRef,
 };
 
@@ -19,13 +21,27 @@ pub enum Severity {
 }
 
 /// A message for the user.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Notice {
     /// How bad it is.
     pub severity: Severity,
     /// One line.
     pub text: String,
+    /// When it was first seen, seconds of the window's clock.
+    pub since: Option<f64>,
 }
+
+/// What a picture took.
+#[derive(Clone, Copy, Debug)]
+pub struct Timing {
+    /// Times and rays.
+    pub stats: FrameStats,
+    /// How far it was refined.
+    pub level: Level,
+}
+
+/// Pictures whose times are kept.
+pub const TIMINGS: usize = 240;
 
 /// A scene on its way.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,6 +63,8 @@ pub struct Shown {
     pub loading: Option<Loading>,
     /// The newest picture of each side.
     pub sides: [Option<Rendered>; 2],
+    /// Whether the picture of a side still shows the scene that was open before.
+    pub is_stale: [bool; 2],
     /// Both compared.
     pub difference: Option<Difference>,
     /// What the pixel did that was asked for last.
@@ -59,6 +77,8 @@ pub struct Shown {
     pub export: Option<f32>,
     /// Messages, the newest last.
     pub notices: Vec<Notice>,
+    /// What the last pictures took, the newest last.
+    pub timings: VecDeque<Timing>,
 }
 
 impl Shown {
@@ -71,6 +91,8 @@ impl Shown {
                 for warning in &opened.warnings {
                     self.notify(Severity::Warning, warning);
                 }
+                self.is_stale = [true; 2];
+                self.difference = None;
                 self.opened = Some(opened);
             }
             Event::OpenFailed { message, .. } => {
@@ -81,6 +103,11 @@ impl Shown {
                 let side = rendered.side as usize;
                 self.refused[side].clear();
                 self.progress[side] = None;
+                if self.timings.len() == TIMINGS {
+                    self.timings.pop_front();
+                }
+                self.timings.push_back(Timing { stats: rendered.stats, level: rendered.level });
+                self.is_stale[side] = false;
                 self.sides[side] = Some(*rendered);
             }
             Event::Difference(difference) => self.difference = Some(*difference),
@@ -101,6 +128,6 @@ impl Shown {
 
     /// Adds a message.
     pub fn notify(&mut self, severity: Severity, text: impl Into<String>) {
-        self.notices.push(Notice { severity, text: text.into() });
+        self.notices.push(Notice { severity, text: text.into(), since: None });
     }
 }
