@@ -1,15 +1,31 @@
 //! The application without its window: what the user decides, what the engine answers, what is drawn.
 
+mod actions;
+mod clock;
+mod command;
+mod drop;
+mod errands;
+mod history;
+mod script;
 mod shown;
 
-pub use shown::{Loading, Notice, Severity, Shown};
+use std::time::Duration;
+
+pub use shown::{Loading, Notice, Severity, Shown, TIMINGS, Timing};
+
+pub(crate) use errands::write;
 
 use crate::{
     canvas::Canvas,
-    engine::{Engine, Order},
-    model::{Comparison, Model, Side},
-    panels::Panels,
+    engine::{Engine, Event, Order},
+    memory::{Memory, Store, look_of},
+    model::{Comparison, Model, SceneRef, Side},
+    panels::{Panels, Wishes},
 };
+use ambray::settings::Settings;
+use clock::Clock;
+use errands::Errands;
+use history::History;
 
 /// The application.
 #[derive(Debug)]
@@ -18,52 +34,163 @@ pub struct App {
     pub model: Model,
     /// What the engine has delivered.
     pub shown: Shown,
+    /// What is remembered.
+    pub memory: Memory,
     engine: Engine,
     canvas: Canvas,
     panels: Panels,
+    store: Store,
+    errands: Errands,
+    history: History,
+    clock: Clock,
     /// The scene that the engine was last asked for.
-    asked: Option<crate::model::SceneRef>,
+    asked: Option<SceneRef>,
+    /// The scene that could not be opened, if that was the last one asked for.
+    failed: Option<SceneRef>,
+    /// The last order.
+    sent: Option<Order>,
+    /// The last settings of each side that can be rendered.
+    valid: [Settings; 2],
+    /// The last line that was put on the clipboard.
+    copied: Option<String>,
+    is_quitting: bool,
 }
 
 impl App {
-    /// Begins with `model`; its scene is opened at once.
+    /// Begins with `model`; its scene is opened at once. Nothing is remembered.
     #[must_use]
     pub fn new(model: Model, engine: Engine) -> Self {
+        Self::remembering(model, engine, Memory::default(), Store::none())
+    }
+
+    /// As [`new`](Self::new), with what is remembered of earlier runs, and where it lies.
+    #[must_use]
+    pub fn remembering(mut model: Model, engine: Engine, memory: Memory, store: Store) -> Self {
+        model.bookmarks = memory.bookmarks_of(&model.scene);
+        let valid = model.settings.each_ref().map(|settings| {
+            if settings.validate().is_empty() { settings.clone() } else { Settings::default() }
+        });
         Self {
             model,
             shown: Shown::default(),
+            memory,
             engine,
             canvas: Canvas::default(),
             panels: Panels::default(),
+            store,
+            errands: Errands::default(),
+            history: History::default(),
+            clock: Clock::default(),
             asked: None,
+            failed: None,
+            sent: None,
+            valid,
+            copied: None,
+            is_quitting: false,
         }
     }
 
     /// One frame of the window: takes what the engine has delivered, draws, and says what is wanted next.
     pub fn ui(&mut self, ui: &mut egui::Ui) {
-        for event in self.engine.poll() {
-            self.shown.take(event);
-        }
+        let now = ui.input(|input| input.time);
+        let has_arrived = self.take_events();
+        self.take_outcomes();
+        self.clock.tick(&mut self.model, self.shown.opened.as_deref(), has_arrived, now);
         if self.asked.as_ref() != Some(&self.model.scene) {
-            self.engine.open(&self.model.scene);
-            self.asked = Some(self.model.scene.clone());
+            self.ask_for_scene();
         }
-        self.panels.show(ui, &mut self.model, &mut self.shown, &self.engine);
+        let Wishes { actions, is_dragging } =
+            self.panels.show(ui, &mut self.model, &mut self.shown, &mut self.memory);
         self.canvas.show(ui, &mut self.model, &mut self.shown, &self.engine);
+        for action in actions {
+            self.perform(ui.ctx(), action);
+        }
         self.model.share();
-        self.engine.show(self.order());
+        let is_typing = ui.ctx().text_edit_focused();
+        self.history.observe(&self.model.settings, is_dragging || self.model.is_moving || is_typing);
+        self.order(is_dragging);
+        self.remember(ui.ctx(), now);
     }
 
-    /// What is wanted now.
-    fn order(&self) -> Order {
+    /// Takes what the engine has delivered; says whether a picture of side A was among it.
+    fn take_events(&mut self) -> bool {
+        let mut has_arrived = false;
+        for event in self.engine.poll() {
+            match &event {
+                Event::Opened(opened) => {
+                    self.failed = None;
+                    self.sent = None;
+                    self.memory.opened(&opened.scene.path);
+                }
+                Event::OpenFailed { scene, .. } => self.failed = Some(scene.clone()),
+                Event::Picture(rendered) => has_arrived |= rendered.side == Side::A,
+                _ => {}
+            }
+            self.shown.take(event);
+        }
+        has_arrived
+    }
+
+    fn ask_for_scene(&mut self) {
+        if let Some(before) = &self.asked {
+            self.memory.keep_bookmarks(before, &self.model.bookmarks);
+            self.model.bookmarks = self.memory.bookmarks_of(&self.model.scene);
+        }
+        self.failed = None;
+        self.engine.open(&self.model.scene);
+        self.asked = Some(self.model.scene.clone());
+    }
+
+    /// Tells the engine what is wanted where that has changed.
+    fn order(&mut self, is_dragging: bool) {
+        for side in Side::ALL {
+            // What cannot be rendered is shown in the panel; the last picture that could be stays.
+            if self.model.of(side).validate().is_empty() {
+                self.valid[side as usize] = self.model.of(side).clone();
+            }
+        }
         let model = &self.model;
-        let side = |side: Side| model.sides().contains(&side).then(|| model.of(side).clone());
-        Order {
+        let side = |side: Side| model.sides().contains(&side).then(|| self.valid[side as usize].clone());
+        let order = Order {
             sides: Side::ALL.map(side),
             aov: model.aov,
             comparison: if model.sides().len() == 1 { Comparison::Off } else { model.comparison },
-            is_moving: model.is_moving,
+            is_moving: model.is_moving || is_dragging,
             is_playing: model.playback.is_playing,
+        };
+        if self.sent.as_ref() != Some(&order) {
+            self.engine.show(order.clone());
+            self.sent = Some(order);
         }
+    }
+
+    fn remember(&mut self, ctx: &egui::Context, now: f64) {
+        self.note();
+        let (is_waiting, told) = self.store.keep(&self.memory, now);
+        if is_waiting {
+            ctx.request_repaint_after(Duration::from_millis(500));
+        }
+        if let Some(message) = told {
+            self.shown.notify(Severity::Warning, message);
+        }
+    }
+
+    /// Brings the memory up to date.
+    fn note(&mut self) {
+        self.memory.settings = look_of(self.model.of(Side::A));
+        if self.asked.as_ref() == Some(&self.model.scene) {
+            self.memory.keep_bookmarks(&self.model.scene, &self.model.bookmarks);
+        }
+    }
+
+    /// Writes what is to be remembered. For the end of the program; says what went wrong.
+    pub fn finish(&mut self) -> Option<String> {
+        self.note();
+        self.store.finish(&self.memory)
+    }
+
+    /// The canvas.
+    pub const fn canvas_mut(&mut self) -> &mut Canvas {
+        &mut self.canvas
     }
 }

@@ -9,6 +9,7 @@ pub mod app;
 pub mod camera;
 pub mod canvas;
 pub mod engine;
+pub mod memory;
 pub mod model;
 pub mod panels;
 pub mod shell;

@@ -96,10 +96,10 @@ impl PanelsState {
     }
 }
 
-/// The settings that fit any scene: all but size, camera and moment, where they differ from the defaults.
+/// The settings that fit any scene: all but size, camera and moment.
 #[must_use]
 pub fn look_of(settings: &Settings) -> SettingsPatch {
-    let bound = SettingsPatch {
+    SettingsPatch {
         size: None,
         animation: None,
         time: None,
@@ -111,8 +111,7 @@ pub fn look_of(settings: &Settings) -> SettingsPatch {
         vertical_fov: None,
         orthographic_height: None,
         ..SettingsPatch::full(settings)
-    };
-    bound
+    }
 }
 
 impl Memory {

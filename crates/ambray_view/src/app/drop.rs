@@ -10,7 +10,11 @@ pub(super) fn purpose(path: PathBuf) -> Result<Action, String> {
     match extension.as_deref() {
         Some("gltf" | "glb" | "obj") => Ok(Action::Open(SceneRef::new(path))),
         Some("toml" | "png" | "exr") => Ok(Action::LoadSettings(path)),
-        _ => Err(format!("{}: {}", name(&path), "neither a scene (.gltf, .glb, .obj) nor settings (.toml, .png, .exr)")),
+        _ => Err(format!(
+            "{}: {}",
+            name(&path),
+            "neither a scene (.gltf, .glb, .obj) nor settings (.toml, .png, .exr)"
+        )),
     }
 }
 

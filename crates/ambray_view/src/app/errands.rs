@@ -1,7 +1,6 @@
 //! Small work with files that the window does not wait for.
 
 use std::{
-    io::Write as _,
     path::{Path, PathBuf},
     sync::mpsc,
 };
@@ -41,9 +40,7 @@ impl Default for Errands {
 impl Errands {
     /// Reads settings from TOML or from a picture.
     pub(super) fn load(&mut self, ctx: &egui::Context, path: PathBuf) {
-        self.run(ctx, move || {
-            settings_file::read(&path).map(|file| Outcome::Loaded(path, Box::new(file)))
-        });
+        self.run(ctx, move || settings_file::read(&path).map(|file| Outcome::Loaded(path, Box::new(file))));
     }
 
     /// Writes settings as TOML.

@@ -2,7 +2,6 @@
 
 use std::{
     fs,
-    io::Write as _,
     path::{Path, PathBuf},
     thread::JoinHandle,
 };
@@ -10,6 +9,7 @@ use std::{
 use anyhow::Context as _;
 
 use super::Memory;
+use crate::app::write;
 
 /// Seconds without a change before the memory is written.
 const DELAY: f64 = 1.5;
@@ -54,7 +54,7 @@ impl Store {
     /// Writes `memory` in the background if it has changed and then stayed the same for a moment. The error is that of an
     /// earlier write. Says whether something still waits.
     pub fn keep(&mut self, memory: &Memory, now: f64) -> (bool, Option<String>) {
-        let Some(path) = &self.path else { return (false, None) };
+        let Some(path) = self.path.clone() else { return (false, None) };
         let mut told = None;
         if self.writing.as_ref().is_some_and(JoinHandle::is_finished) {
             told = self.finish_writing();
@@ -66,9 +66,9 @@ impl Store {
         if self.writing.is_none()
             && let Some((waiting, _)) = self.waiting.take_if(|(_, since)| now - *since >= DELAY)
         {
-            let (path, text) = (path.clone(), spell(&waiting));
+            let text = spell(&waiting);
             self.written = waiting;
-            self.writing = Some(std::thread::spawn(move || write(&path, &text)));
+            self.writing = Some(std::thread::spawn(move || place(&path, &text)));
         }
         (self.waiting.is_some(), told)
     }
@@ -82,7 +82,7 @@ impl Store {
             return None;
         }
         self.written = memory.clone();
-        write(path, &spell(memory)).err().map(|error| format!("{}: {error:#}", path.display()))
+        place(path, &spell(memory)).err().map(|error| format!("{}: {error:#}", path.display()))
     }
 
     fn finish_writing(&mut self) -> Option<String> {
@@ -98,7 +98,8 @@ impl Store {
 fn read(path: &Path) -> anyhow::Result<Memory> {
     match fs::read_to_string(path) {
         Ok(text) => toml::from_str(&text).map_err(|error| {
-            let line = error.span().map_or(1, |span| 1 + text[..span.start.min(text.len())].matches('\n').count());
+            let line =
+                error.span().map_or(1, |span| 1 + text[..span.start.min(text.len())].matches('\n').count());
             anyhow::anyhow!("line {line}: {}", error.message())
         }),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(Memory::default()),
@@ -106,18 +107,14 @@ fn read(path: &Path) -> anyhow::Result<Memory> {
     }
 }
 
-fn spell(memory: &Memory) -> String {
-    toml::to_string(memory).expect("the memory is plain data")
+/// Writes the file, in a folder that may be new.
+fn place(path: &Path, text: &str) -> anyhow::Result<()> {
+    fs::create_dir_all(path.parent().context("is no file")?)?;
+    write(path, text)
 }
 
-/// Replaces the file at `path`, which appears complete or not at all.
-pub(crate) fn write(path: &Path, text: &str) -> anyhow::Result<()> {
-    let folder = path.parent().context("is no file")?;
-    fs::create_dir_all(folder)?;
-    let mut file = tempfile::NamedTempFile::new_in(folder)?;
-    file.write_all(text.as_bytes())?;
-    file.persist(path)?;
-    Ok(())
+fn spell(memory: &Memory) -> String {
+    toml::to_string(memory).expect("the memory is plain data")
 }
 
 #[cfg(test)]
@@ -125,7 +122,10 @@ mod tests {
     use ambray::settings::{Auto, Settings, Thin};
 
     use super::*;
-    use crate::{memory::look_of, model::{Bookmark, SceneRef}};
+    use crate::{
+        memory::look_of,
+        model::{Bookmark, SceneRef},
+    };
 
     fn full() -> Memory {
         let settings = Settings { thin: Thin::Sheet, exposure: 0.1, ..Settings::default() };

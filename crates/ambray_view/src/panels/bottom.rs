@@ -81,7 +81,8 @@ fn transport(ui: &mut Ui, desk: &mut Desk<'_>, animations: &[(String, f32)]) {
         picker(ui, desk.model.edited_mut(), animations);
     }
     let playback = &mut desk.model.playback;
-    let speed = DragValue::new(&mut playback.speed).speed(0.01).range(0.01..=16.0).prefix("x ").max_decimals(2);
+    let speed =
+        DragValue::new(&mut playback.speed).speed(0.01).range(0.01..=16.0).prefix("x ").max_decimals(2);
     ui.add(speed).on_hover_text("Seconds of the animation in a second");
     let fps = DragValue::new(&mut playback.fps).speed(0.1).range(1.0..=240.0).suffix(" fps").max_decimals(1);
     ui.add(fps).on_hover_text("Frames a second of a single step");
@@ -107,7 +108,8 @@ fn picker(ui: &mut Ui, settings: &mut Settings, animations: &[(String, f32)]) {
 
 fn accumulation(ui: &mut Ui, desk: &mut Desk<'_>) {
     let mut is_on = desk.model.edited().temporal == Temporal::On;
-    let tip = "Light accumulates over frames: each continues the sample sequence and keeps what is still true";
+    let tip =
+        "Light accumulates over frames: each continues the sample sequence and keeps what is still true";
     let response = ui.checkbox(&mut is_on, "accumulate").on_hover_text(tip);
     if response.changed() {
         desk.model.edited_mut().temporal = if is_on { Temporal::On } else { Temporal::Off };

@@ -10,11 +10,16 @@ use super::{Desk, action::Action, became};
 use crate::model::Bookmark;
 
 pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
-    let names: Vec<_> = desk.shown.opened.iter().flat_map(|opened| &opened.cameras).map(|c| c.name.clone()).collect();
+    let names: Vec<_> =
+        desk.shown.opened.iter().flat_map(|opened| &opened.cameras).map(|c| c.name.clone()).collect();
     let settings = desk.model.edited_mut();
     let is_free = settings.camera_position.value().is_some();
     let is_automatic = !is_free && settings.camera == Auto::Auto;
-    if ui.radio(is_automatic, "Automatic").on_hover_text("The first camera of the file, or a view of the whole scene").clicked() {
+    if ui
+        .radio(is_automatic, "Automatic")
+        .on_hover_text("The first camera of the file, or a view of the whole scene")
+        .clicked()
+    {
         Bookmark::default().apply(settings);
     }
     for name in names {

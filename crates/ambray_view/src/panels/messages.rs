@@ -18,14 +18,14 @@ pub(super) fn show(ctx: &Context, desk: &mut Desk<'_>) {
     if lives.is_some() {
         ctx.request_repaint_after_secs(0.25);
     }
-    Area::new(Id::new("messages"))
-        .order(Order::Middle)
-        .anchor(Align2::CENTER_TOP, [0.0, 34.0])
-        .show(ctx, |ui| {
+    Area::new(Id::new("messages")).order(Order::Middle).anchor(Align2::CENTER_TOP, [0.0, 34.0]).show(
+        ctx,
+        |ui| {
             ui.set_max_width(560.0);
             progress(ui, desk);
             cards(ui, desk);
-        });
+        },
+    );
 }
 
 /// Seconds that a message stays; errors stay until they are dismissed.
@@ -38,7 +38,10 @@ const fn lifetime(severity: Severity) -> Option<f64> {
 }
 
 fn frame(ui: &Ui, color: Color32) -> Frame {
-    Frame::window(ui.style()).fill(Color32::from_rgb(30, 31, 33)).stroke(Stroke::new(1.0, color)).inner_margin(6)
+    Frame::window(ui.style())
+        .fill(Color32::from_rgb(30, 31, 33))
+        .stroke(Stroke::new(1.0, color))
+        .inner_margin(6)
 }
 
 fn progress(ui: &mut Ui, desk: &mut Desk<'_>) {
@@ -88,7 +91,9 @@ fn cards(ui: &mut Ui, desk: &mut Desk<'_>) {
                 let width = 500.0;
                 ui.scope(|ui| {
                     ui.set_max_width(width);
-                    ui.add(egui::Label::new(RichText::new(&notice.text).color(Color32::from_gray(222))).wrap());
+                    ui.add(
+                        egui::Label::new(RichText::new(&notice.text).color(Color32::from_gray(222))).wrap(),
+                    );
                 });
                 if ui.small_button("x").on_hover_text("Dismiss").clicked() {
                     dismissed = Some(i);

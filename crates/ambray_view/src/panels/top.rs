@@ -59,7 +59,8 @@ fn copy(ui: &mut Ui, desk: &mut Desk<'_>) {
 
 fn scene_name(ui: &mut Ui, desk: &Desk<'_>) {
     let path = desk.shown.opened.as_ref().map_or(&desk.model.scene.path, |opened| &opened.scene.path);
-    let name = path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into());
+    let name =
+        path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into());
     let label = egui::Label::new(RichText::new(name).weak()).truncate();
     ui.add(label).on_hover_text(path.display().to_string());
 }

@@ -25,7 +25,11 @@ pub(super) fn show(ui: &mut Ui, statistics: &Statistics, is_log: bool, handles: 
     ui.painter().rect_filled(rect, CornerRadius::same(2), ui.visuals().extreme_bg_color);
     let colors: &[Color32] = match statistics.histogram.len() {
         1 => &[Color32::from_gray(190)],
-        _ => &[Color32::from_rgb(206, 92, 84), Color32::from_rgb(104, 178, 96), Color32::from_rgb(96, 132, 214)],
+        _ => &[
+            Color32::from_rgb(206, 92, 84),
+            Color32::from_rgb(104, 178, 96),
+            Color32::from_rgb(96, 132, 214),
+        ],
     };
     let height = |n: u32| if is_log { f32::ln_1p(n as f32) } else { n as f32 };
     let top = statistics.histogram.iter().flatten().map(|&n| height(n)).fold(1.0, f32::max);
@@ -64,8 +68,11 @@ fn drag(ui: &Ui, rect: Rect, (low, high): (f32, f32), handles: Handles) -> Shown
         shown.is_dragged |= response.dragged();
         if let Some(at) = response.interact_pointer_pos().filter(|_| response.dragged()) {
             let value = low + ((at.x - rect.left()) / rect.width()).clamp(0.0, 1.0) * span;
-            shown.moved =
-                Some(if is_low { Handles { low: value, ..handles } } else { Handles { high: value, ..handles } });
+            shown.moved = Some(if is_low {
+                Handles { low: value, ..handles }
+            } else {
+                Handles { high: value, ..handles }
+            });
         }
         response.on_hover_cursor(egui::CursorIcon::ResizeHorizontal);
     }

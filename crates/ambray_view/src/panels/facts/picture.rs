@@ -17,7 +17,8 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
         difference(ui, desk);
     }
     let side = if desk.model.comparison == Comparison::Off { Side::A } else { desk.model.editing };
-    let statistics = desk.shown.sides[side as usize].as_ref().and_then(|rendered| rendered.statistics.clone());
+    let statistics =
+        desk.shown.sides[side as usize].as_ref().and_then(|rendered| rendered.statistics.clone());
     let aov = desk.model.aov;
     ui.horizontal(|ui| {
         ui.label(RichText::new(aov.name()).weak());
@@ -70,7 +71,9 @@ fn exposure(ui: &mut Ui, desk: &mut Desk<'_>) {
         ui.spacing_mut().slider_width = (ui.available_width() - 116.0).max(60.0);
         let slider = Slider::new(&mut settings.exposure, -6.0..=6.0).suffix(" EV").max_decimals(2);
         let slider = ui.add(slider.clamping(egui::SliderClamping::Never));
-        slider.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Slider, true, "exposure of the picture"));
+        slider.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::WidgetType::Slider, true, "exposure of the picture")
+        });
         desk.is_dragging |= slider.labelled_by(label).dragged();
         if ui.small_button("0").on_hover_text("Back to 0 EV").clicked() {
             desk.model.edited_mut().exposure = 0.0;

@@ -11,7 +11,7 @@ use crate::engine::{Opened, Rendered};
 
 /// The value that the setting `name` has in the picture, spelled as a setting; `None` where a picture has none.
 #[must_use]
-pub fn value(name: &str, rendered: Option<&Rendered>, opened: Option<&Opened>) -> Option<String> {
+pub(crate) fn value(name: &str, rendered: Option<&Rendered>, opened: Option<&Opened>) -> Option<String> {
     match name {
         "animation" => return Some(opened?.animations.first()?.name.clone()),
         "camera" => return Some(opened?.cameras.first()?.name.clone()),
@@ -51,7 +51,7 @@ pub fn value(name: &str, rendered: Option<&Rendered>, opened: Option<&Opened>) -
 
 /// A point in the middle of the picture, as far away as the middle of the scene.
 #[must_use]
-pub fn target(view: &View, opened: Option<&Opened>) -> Vec3 {
+pub(crate) fn target(view: &View, opened: Option<&Opened>) -> Vec3 {
     let camera = &view.camera;
     let (low, high) = opened.map_or((Vec3::ZERO, Vec3::ONE), |opened| opened.bounds);
     let depth = camera.depth(0.5 * (low + high));

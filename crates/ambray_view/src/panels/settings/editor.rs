@@ -7,26 +7,26 @@ use super::scale::{self, Extent, Scale};
 
 /// A setting that is being edited.
 #[derive(Debug)]
-pub struct Editor<'a> {
+pub(crate) struct Editor<'a> {
     /// Which.
-    pub field: &'static Field,
+    pub(crate) field: &'static Field,
     /// Its value; `auto` is replaced by what it became.
-    pub text: &'a str,
+    pub(crate) text: &'a str,
     /// The scene's extent.
-    pub extent: Extent,
+    pub(crate) extent: Extent,
     /// Names to choose from, for settings that name things of the scene.
-    pub names: &'a [String],
+    pub(crate) names: &'a [String],
     /// The label that names the editor.
-    pub label: Id,
+    pub(crate) label: Id,
 }
 
 /// What an editor did.
 #[derive(Debug, Default)]
-pub struct Edit {
+pub(crate) struct Edit {
     /// The new value.
-    pub text: Option<String>,
+    pub(crate) text: Option<String>,
     /// Whether it is being dragged.
-    pub is_dragged: bool,
+    pub(crate) is_dragged: bool,
 }
 
 impl Edit {
@@ -37,7 +37,7 @@ impl Edit {
 
 impl Editor<'_> {
     /// Draws the editor over the rest of the row.
-    pub fn show(&self, ui: &mut Ui) -> Edit {
+    pub(crate) fn show(&self, ui: &mut Ui) -> Edit {
         match self.field.kind {
             Kind::Whole => self.whole(ui),
             Kind::Number | Kind::AutoNumber => self.number(ui),

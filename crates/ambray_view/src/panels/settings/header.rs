@@ -4,10 +4,7 @@ use ambray::settings::{Preset, Settings};
 use egui::{RichText, TextEdit, Ui};
 
 use super::{reset, side_mark};
-use crate::{
-    model::Side,
-    panels::Desk,
-};
+use crate::{model::Side, panels::Desk};
 
 /// The presets of the program, with what they are.
 const PRESETS: [(Preset, &str, &str); 3] = [
@@ -46,7 +43,8 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>, search: &mut String) {
         let width = ui.available_width() - if search.is_empty() { 0.0 } else { 26.0 };
         let field = TextEdit::singleline(search).hint_text("Search settings").desired_width(width);
         let response = ui.add(field);
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, true, "search settings"));
+        response
+            .widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, true, "search settings"));
         if !search.is_empty() && ui.button("x").on_hover_text("Show all").clicked() {
             search.clear();
         }

@@ -1,10 +1,10 @@
 //! The settings panel: every setting of `ambray render`, in its group, with what it means and a way back.
 
-pub mod became;
+pub(crate) mod became;
 mod editor;
 mod header;
 mod row;
-pub mod scale;
+pub(crate) mod scale;
 
 use ambray::settings::{Field, Settings, SettingsError};
 use egui::{CollapsingHeader, RichText, ScrollArea, Ui, pos2, vec2};

@@ -6,7 +6,9 @@ use egui::{Color32, Label, RichText, Sense, Ui, vec2};
 use super::{
     Context, became,
     editor::{Edit, Editor},
-    reset, scale::Extent, side_mark, title,
+    reset,
+    scale::Extent,
+    side_mark, title,
 };
 use crate::{
     model::Resolution,
@@ -73,7 +75,8 @@ impl Row {
 
     pub(super) fn show(&self, ui: &mut Ui, desk: &mut Desk<'_>, context: &Context) {
         let field = self.field;
-        let edit = ui.push_id(field.name, |ui| ui.horizontal(|ui| self.widgets(ui, desk, context)).inner).inner;
+        let edit =
+            ui.push_id(field.name, |ui| ui.horizontal(|ui| self.widgets(ui, desk, context)).inner).inner;
         desk.is_dragging |= edit.is_dragged;
         if let Some(text) = edit.text {
             // What cannot be read is no value yet: the old one stays.
@@ -103,8 +106,7 @@ impl Row {
         let label = self.label(ui, desk, &name, &default);
         let auto_width = if self.has_auto() { 46.0 } else { 0.0 };
         let (text, is_auto) = (if self.is_auto() { self.start() } else { self.text.clone() }, self.is_auto());
-        let editor =
-            Editor { field, text: &text, extent: self.extent, names: &self.names, label };
+        let editor = Editor { field, text: &text, extent: self.extent, names: &self.names, label };
         let size = vec2(ui.available_width() - auto_width, ui.spacing().interact_size.y);
         let layout = egui::Layout::left_to_right(egui::Align::Center);
         let mut edit = ui
@@ -146,8 +148,12 @@ impl Row {
                 ui.label(RichText::new(format!("{name}: {meaning}")).weak());
             }
         }
-        let allowed = if field.allowed.is_empty() { String::new() } else { format!("allowed: {}\n", field.allowed) };
-        ui.label(RichText::new(format!("{allowed}default: {default}\n--{} {}", field.name, field.value_name)).monospace());
+        let allowed =
+            if field.allowed.is_empty() { String::new() } else { format!("allowed: {}\n", field.allowed) };
+        ui.label(
+            RichText::new(format!("{allowed}default: {default}\n--{} {}", field.name, field.value_name))
+                .monospace(),
+        );
     }
 
     fn auto(&self, ui: &mut Ui, name: &str) -> Option<String> {

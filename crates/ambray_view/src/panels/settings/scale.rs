@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 /// What a slider covers; other values can be typed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Scale {
+pub(crate) enum Scale {
     /// Evenly from one end to the other.
     Linear(f32, f32),
     /// By factors.
@@ -19,11 +19,11 @@ pub enum Scale {
 
 /// What is known of the scene that scales depend on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Extent {
+pub(crate) struct Extent {
     /// Diagonal of the box around it, scene units.
-    pub diagonal: f32,
+    pub(crate) diagonal: f32,
     /// Length of the animation, seconds.
-    pub duration: f32,
+    pub(crate) duration: f32,
 }
 
 impl Default for Extent {
@@ -34,7 +34,7 @@ impl Default for Extent {
 
 /// The scale of the setting `name`; settings without one are dragged, not slid.
 #[must_use]
-pub fn of(name: &str) -> Option<Scale> {
+pub(crate) fn of(name: &str) -> Option<Scale> {
     Some(match name {
         "exposure" => Scale::Linear(-6.0, 6.0),
         "spp" => Scale::Log(1.0, 1024.0),
@@ -56,7 +56,7 @@ pub fn of(name: &str) -> Option<Scale> {
 impl Scale {
     /// The values at the ends.
     #[must_use]
-    pub fn range(self, extent: Extent) -> RangeInclusive<f32> {
+    pub(crate) fn range(self, extent: Extent) -> RangeInclusive<f32> {
         let diagonal = extent.diagonal.max(f32::MIN_POSITIVE);
         match self {
             Self::Linear(low, high) | Self::Log(low, high) => low..=high,
@@ -68,14 +68,14 @@ impl Scale {
 
     /// Whether steps are factors.
     #[must_use]
-    pub const fn is_logarithmic(self) -> bool {
+    pub(crate) const fn is_logarithmic(self) -> bool {
         matches!(self, Self::Log(..) | Self::OfScene(..) | Self::PerScene(..))
     }
 }
 
 /// What stands behind a value: its unit.
 #[must_use]
-pub fn unit(value_name: &str) -> &'static str {
+pub(crate) fn unit(value_name: &str) -> &'static str {
     match value_name {
         "DEGREES" => "°",
         "STOPS" => " EV",
@@ -103,7 +103,9 @@ mod tests {
                 settings.set(field.name, &end.to_string()).unwrap();
                 assert_eq!(settings.validate(), [], "{}", field.name);
             }
-            if let (Kind::Number | Kind::Whole, Some(text)) = (field.kind, Settings::default().get(field.name)) {
+            if let (Kind::Number | Kind::Whole, Some(text)) =
+                (field.kind, Settings::default().get(field.name))
+            {
                 assert!(range.contains(&text.parse().unwrap()), "{}", field.name);
             }
         }

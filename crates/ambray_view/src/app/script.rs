@@ -1,0 +1,66 @@
+//! What a test or a script needs to know and to do, besides keys and the mouse.
+
+use ambray::settings::SetError;
+
+use super::{App, Severity};
+use crate::model::{Resolution, Side};
+
+impl App {
+    /// Whether everything that was asked for is shown: final pictures, nothing loading, nothing being written.
+    #[must_use]
+    pub fn is_idle(&self) -> bool {
+        let is_open = self.failed.is_some()
+            || self.shown.opened.as_ref().is_some_and(|opened| opened.scene == self.model.scene);
+        let is_asked = self.asked.as_ref() == Some(&self.model.scene);
+        let is_quiet = self.shown.loading.is_none() && self.shown.export.is_none() && self.errands.is_idle();
+        is_asked && is_open && is_quiet && self.model.sides().iter().all(|&side| self.is_final(side))
+    }
+
+    /// Whether the picture of `side` is what was asked for, or cannot be.
+    fn is_final(&self, side: Side) -> bool {
+        let i = side as usize;
+        if !self.shown.refused[i].is_empty() || self.shown.opened.is_none() {
+            return true;
+        }
+        let wanted = self.sent.as_ref().and_then(|order| order.sides[i].as_ref());
+        let Some((wanted, rendered)) = wanted.zip(self.shown.sides[i].as_ref()) else { return false };
+        // Frames that are accumulated count on.
+        let is_same =
+            ambray::settings::Settings { frame: wanted.frame, ..rendered.settings.clone() } == *wanted;
+        is_same && rendered.level.is_final && rendered.aov == self.model.aov && !self.shown.is_stale[i]
+    }
+
+    /// Whether the window is to be closed.
+    #[must_use]
+    pub const fn is_quitting(&self) -> bool {
+        self.is_quitting
+    }
+
+    /// Whether the help is shown.
+    #[must_use]
+    pub const fn is_help_open(&self) -> bool {
+        self.panels.is_help_open()
+    }
+
+    /// The last line that was put on the clipboard.
+    #[must_use]
+    pub fn copied(&self) -> Option<&str> {
+        self.copied.as_deref()
+    }
+
+    /// The newest error that is shown.
+    #[must_use]
+    pub fn error(&self) -> Option<&str> {
+        let notices = self.shown.notices.iter().rev();
+        notices.filter(|notice| notice.severity == Severity::Error).map(|notice| notice.text.as_str()).next()
+    }
+
+    /// Changes a setting of the edited side by name, spelled as on the command line.
+    pub fn set(&mut self, name: &str, value: &str) -> Result<(), SetError> {
+        self.model.edited_mut().set(name, value)?;
+        if name == "size" {
+            self.model.resolution = Resolution::Fixed(self.model.edited().size);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,330 @@
+//! The panels, worked by their labels and by keys, without a window.
+
+mod desk;
+
+use ambray::settings::{Auto, Kind, Settings, Thin, Window};
+use ambray_view::{
+    app::Severity,
+    model::{Comparison, SceneRef, Side},
+};
+use desk::{Desk, Dropped};
+use egui::{Key, Modifiers, accesskit::Role};
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+
+#[test]
+fn every_setting_has_an_editor() {
+    let mut desk = Desk::new();
+    desk.open_all_groups();
+    for field in Settings::fields() {
+        let name = field.name.replace('-', " ");
+        let editors: Vec<_> = desk.harness.query_all_by_label(&name).collect();
+        assert!(!editors.is_empty(), "{name} has no editor");
+        if field.kind.has_auto() {
+            desk.harness.get_by_label(&format!("{name} auto"));
+        }
+    }
+}
+
+#[test]
+fn flags_and_numbers_are_changed_by_their_widgets_and_reset_by_a_click() {
+    let mut desk = Desk::new();
+    desk.open_all_groups();
+    desk.click("lights");
+    assert!(!desk.settings().lights);
+    desk.click("reset lights");
+    assert!(desk.settings().lights);
+
+    let spp = desk.harness.get_by_role_and_label(Role::Slider, "spp");
+    spp.scroll_to_me();
+    desk.step(3);
+    desk.harness.get_by_role_and_label(Role::Slider, "spp").focus();
+    desk.step(2);
+    desk.harness.key_press(Key::ArrowRight);
+    desk.step(2);
+    let changed = desk.settings().spp;
+    assert!(changed > 1, "{changed}");
+    desk.click("reset Ambient light");
+    assert_eq!(desk.settings().spp, Settings::default().spp);
+}
+
+#[test]
+fn choices_are_chosen_with_their_meanings_beside_them() {
+    let mut desk = Desk::new();
+    desk.open_all_groups();
+    for field in Settings::fields() {
+        let Kind::Choice(choices) = field.kind else { continue };
+        let name = field.name.replace('-', " ");
+        let current = desk.settings().get(field.name).unwrap();
+        let (other, _) = choices.iter().find(|(name, _)| *name != current).unwrap();
+        desk.click(&name);
+        desk.harness.get_by_role_and_label(Role::Button, other).click();
+        desk.step(3);
+        assert_eq!(desk.settings().get(field.name).as_deref(), Some(*other), "{name}");
+    }
+}
+
+#[test]
+fn auto_begins_with_what_it_became() {
+    let mut desk = Desk::new();
+    desk.wait();
+    desk.open_all_groups();
+    let became = desk.app().shown.sides[0].as_ref().unwrap().view.radius;
+    desk.click("radius auto");
+    assert_eq!(desk.settings().radius, Auto::Value(became));
+    desk.click("radius auto");
+    assert_eq!(desk.settings().radius, Auto::Auto);
+}
+
+#[test]
+fn the_search_shows_what_it_finds_in_names_and_meanings() {
+    let mut desk = Desk::new();
+    desk.harness.get_by_label("search settings").focus();
+    desk.step(1);
+    desk.harness.get_by_label("search settings").type_text("tangent");
+    desk.step(3);
+    desk.harness.get_by_label("filter plane");
+    assert!(desk.harness.query_by_label("lights").is_none());
+}
+
+#[test]
+fn each_side_is_edited_by_itself_and_a_comparison_that_ends_goes_back_to_a() {
+    let mut desk = Desk::new();
+    desk.open_all_groups();
+    desk.click("A | B");
+    assert_eq!(desk.app().model.comparison, Comparison::Split);
+    desk.click("B");
+    assert_eq!(desk.app().model.editing, Side::B);
+    desk.click("lights");
+    let [a, b] = &desk.app().model.settings;
+    assert_eq!((a.lights, b.lights), (true, false));
+    desk.click("A");
+    desk.step(1);
+    let model = &desk.app().model;
+    assert!(model.editing == Side::A || model.comparison == Comparison::Off);
+}
+
+#[test]
+fn pairs_that_are_often_compared_are_one_click_away() {
+    let mut desk = Desk::new();
+    let mut choose = |name: &str| {
+        desk.click("Compare");
+        desk.click(name);
+        let model = &desk.app().model;
+        assert_eq!(model.comparison, Comparison::Split, "{name}");
+        model.settings.clone()
+    };
+    let [a, b] = choose("thin off | sheet");
+    assert_eq!((a.thin, b.thin), (Thin::Off, Thin::Sheet));
+    let [a, b] = choose("4 | 8 rays per pixel");
+    assert_eq!((a.spp, b.spp), (4, 8));
+    let [a, b] = choose("filtered | raw");
+    assert_eq!((a.filter, b.filter), (Window::Centred, Window::Off));
+    let [a, b] = choose("this | converged reference");
+    assert_eq!((a.spp, b.spp), (4, 1024));
+    desk.click("Compare");
+    desk.click("Swap A and B");
+    let [a, b] = &desk.app().model.settings;
+    assert_eq!((a.spp, b.spp), (1024, 4));
+    desk.click("Compare");
+    desk.click("Copy A to B");
+    let [a, b] = &desk.app().model.settings;
+    assert_eq!(a, b);
+}
+
+#[test]
+fn the_command_line_names_what_differs_and_the_plane() {
+    let mut desk = Desk::new();
+    desk.wait();
+    desk.app_mut().set("thin", "sheet").unwrap();
+    desk.app_mut().set("exposure", "0.1").unwrap();
+    desk.app_mut().model.aov = ambray::Aov::Depth;
+    desk.step(2);
+    desk.click("Copy as command line");
+    let line = desk.app().copied().expect("the line is copied").to_owned();
+    assert!(line.starts_with("ambray render atrium "), "{line}");
+    for part in ["--thin=sheet", "--exposure=0.1", "--spp=1", "--aov=depth", "-o ambray.png"] {
+        assert!(line.contains(part), "{line} lacks {part}");
+    }
+    let size = desk.settings().size;
+    assert!(line.contains(&format!("--size={size}")), "{line}");
+    // Read back word by word, it is the settings again.
+    let mut settings = Settings::default();
+    for word in line.split(' ').filter_map(|word| word.strip_prefix("--")) {
+        let (name, value) = word.split_once('=').unwrap();
+        if name != "aov" {
+            settings.set(name, value).unwrap();
+        }
+    }
+    assert_eq!(&settings, desk.settings());
+}
+
+#[test]
+fn what_is_not_allowed_is_said_beside_the_setting_and_the_picture_stays() {
+    let mut desk = Desk::new();
+    desk.wait();
+    desk.open_all_groups();
+    let before = desk.app().shown.sides[0].as_ref().unwrap().settings.clone();
+    desk.app_mut().set("filter-cos-normal", "7").unwrap();
+    desk.step(4);
+    desk.harness.get_by_label_contains("7 is not allowed: -1 to 1");
+    desk.wait();
+    assert_eq!(desk.app().shown.sides[0].as_ref().unwrap().settings, before);
+    desk.click("reset filter cos normal");
+    assert!(desk.settings().validate().is_empty());
+}
+
+#[test]
+fn files_that_cannot_be_used_are_told_and_the_scene_stays() {
+    let mut desk = Desk::new();
+    desk.wait();
+    desk.drop_file("notes.txt");
+    assert!(desk.app().error().unwrap().contains("notes.txt: neither a scene"));
+    desk.harness.get_by_label_contains("neither a scene");
+    assert_eq!(desk.app().model.scene, SceneRef::new("atrium"));
+
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("broken.gltf");
+    std::fs::write(&path, "{ this is no scene").unwrap();
+    desk.drop_file(path.to_str().unwrap());
+    desk.until(|app| app.error().is_some_and(|error| error.contains("broken.gltf")));
+    assert_eq!(desk.app().shown.opened.as_ref().unwrap().scene, SceneRef::new("atrium"));
+    assert!(desk.app().shown.sides[0].is_some());
+}
+
+#[test]
+fn settings_are_saved_and_dropped_back() {
+    let mut desk = Desk::new();
+    desk.wait();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("look.toml");
+    desk.app_mut().set("thin", "paper").unwrap();
+    desk.app_mut().set("camera-position", "1,2,-3.5").unwrap();
+    let saved = desk.settings().clone();
+    desk.perform(ambray_view::panels::action::Action::SaveSettings(path.clone()));
+    desk.until(|app| app.shown.notices.iter().any(|notice| notice.text.contains("is written")));
+    desk.app_mut().set("thin", "off").unwrap();
+    desk.app_mut().set("camera-position", "auto").unwrap();
+    desk.drop_file(path.to_str().unwrap());
+    desk.until(|app| app.model.of(Side::A).thin == Thin::Paper);
+    assert_eq!(desk.settings(), &saved);
+
+    std::fs::write(&path, "raduis = 1").unwrap();
+    desk.drop_file(path.to_str().unwrap());
+    desk.until(|app| app.error().is_some_and(|error| error.contains("did you mean radius")));
+    assert_eq!(desk.settings(), &saved);
+}
+
+#[test]
+fn the_help_opens_by_its_key_and_lists_the_keys() {
+    let mut desk = Desk::new();
+    assert!(!desk.app().is_help_open());
+    desk.harness.key_press_modifiers(Modifiers::SHIFT, Key::Questionmark);
+    desk.step(3);
+    assert!(desk.app().is_help_open());
+    desk.harness.get_by_label("Keys and mouse");
+    desk.harness.get_by_label("Open a scene");
+    desk.harness.key_press(Key::F1);
+    desk.step(2);
+    assert!(!desk.app().is_help_open());
+}
+
+#[test]
+fn changes_are_undone_and_made_again_by_keys() {
+    let mut desk = Desk::new();
+    desk.open_all_groups();
+    desk.click("lights");
+    assert!(!desk.settings().lights);
+    desk.harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    desk.step(2);
+    assert!(desk.settings().lights);
+    desk.harness.key_press_modifiers(Modifiers::COMMAND, Key::Y);
+    desk.step(2);
+    assert!(!desk.settings().lights);
+}
+
+#[test]
+fn bookmarks_are_kept_and_found_again_by_keys_and_belong_to_their_scene() {
+    let mut desk = Desk::new();
+    desk.wait();
+    desk.app_mut().set("camera-position", "1,2,3").unwrap();
+    desk.step(1);
+    desk.harness.key_press_modifiers(Modifiers::SHIFT, Key::Num2);
+    desk.step(2);
+    desk.app_mut().set("camera-position", "auto").unwrap();
+    desk.step(1);
+    desk.harness.key_press(Key::Num2);
+    desk.step(2);
+    assert_eq!(desk.settings().get("camera-position").as_deref(), Some("1,2,3"));
+    desk.app_mut().model.scene = SceneRef::new("banner");
+    desk.wait();
+    assert!(desk.app().model.bookmarks.is_empty());
+    desk.app_mut().model.scene = SceneRef::new("atrium");
+    desk.wait();
+    assert_eq!(desk.app().model.bookmarks.len(), 1);
+}
+
+#[test]
+fn an_animation_plays_steps_and_rests() {
+    let mut desk = Desk::new();
+    desk.wait();
+    desk.harness.key_press(Key::Space);
+    desk.step(2);
+    assert!(!desk.app().model.playback.is_playing, "the atrium does not move");
+    desk.app_mut().model.scene = SceneRef::new("banner");
+    desk.wait();
+    desk.harness.key_press(Key::Period);
+    desk.step(2);
+    assert_eq!(desk.settings().time, Auto::Value(1.0 / 24.0));
+    desk.harness.key_press(Key::Space);
+    desk.until(|app| app.model.of(Side::A).time.unwrap_or(0.0) > 0.1);
+    assert!(desk.app().model.playback.is_playing);
+    desk.click("Rest");
+    assert_eq!(desk.settings().time, Auto::Auto);
+    assert!(!desk.app().model.playback.is_playing);
+}
+
+#[test]
+fn panels_are_hidden_and_shown_by_a_key() {
+    let mut desk = Desk::new();
+    desk.harness.key_press(Key::Tab);
+    desk.step(3);
+    assert!(desk.harness.query_by_label("Reset all").is_none());
+    desk.harness.key_press(Key::Tab);
+    desk.step(3);
+    desk.harness.get_by_label("Reset all");
+}
+
+#[test]
+fn presets_are_chosen_and_kept_by_name() {
+    let mut desk = Desk::new();
+    desk.click("Presets");
+    desk.click("draft");
+    assert_eq!(desk.settings().spp, 4);
+    let look = ambray_view::memory::look_of(desk.settings());
+    desk.app_mut().memory.presets.insert("mine".to_owned(), look);
+    desk.app_mut().set("spp", "2").unwrap();
+    desk.click("Presets");
+    desk.click("mine");
+    assert_eq!(desk.settings().spp, 4);
+}
+
+#[test]
+fn good_news_fades_and_errors_stay_until_they_are_dismissed() {
+    let mut desk = Desk::new();
+    desk.app_mut().shown.notify(Severity::Done, "it is done");
+    desk.app_mut().shown.notify(Severity::Error, "it failed");
+    desk.step(2);
+    desk.harness.get_by_label("it is done");
+    desk.pass(30);
+    assert!(desk.harness.query_by_label("it is done").is_none());
+    desk.harness.get_by_label("it failed");
+    desk.click("x");
+    assert_eq!(desk.app().error(), None);
+}
+
+#[test]
+fn dropped_files_have_the_path_they_came_from() {
+    assert_eq!(egui::DroppedFile::path(&Dropped("a/b.glb".into())), std::path::Path::new("a/b.glb"));
+    let desk = Desk::new();
+    assert!(desk.harness.root().accesskit_node().role() == Role::Window);
+}
