@@ -58,6 +58,8 @@ fn stage(path: &Path) -> Option<ShaderStage> {
         "rmiss" => ShaderStage::Miss,
         "rcall" => ShaderStage::Callable,
         "comp" => ShaderStage::Compute,
+        "vert" => ShaderStage::Vertex,
+        "frag" => ShaderStage::Fragment,
         _ => return None,
     })
 }

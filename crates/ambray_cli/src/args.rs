@@ -4,6 +4,7 @@ mod animate;
 mod backend;
 mod notes;
 mod sequence;
+mod view;
 
 use std::{ffi::OsString, fmt::Display, path::PathBuf, str::FromStr};
 
@@ -17,11 +18,12 @@ use clap::{
 };
 
 pub use animate::{AnimateArgs, Updates, UpdatesArgs};
-use notes::{EXAMPLES, POINTS_HELP, PRECEDENCE, RENDER_NOTES};
+use notes::{EXAMPLES, POINTS_HELP, PRECEDENCE, RENDER_NOTES, VIEW_NOTES};
 
 pub use ambray_files::{Format, Rate};
 pub use backend::{Backend, BackendArgs, DeviceArgs, Grouping, GroupingArgs, Trace};
 pub use sequence::{Frames, SequenceArgs};
+pub use view::ViewArgs;
 
 /// Ambient lighting by ray tracing: openness, colour bleeding and pictures.
 ///
@@ -39,6 +41,9 @@ pub enum Command {
     /// Render a scene to a picture
     #[command(after_long_help = RENDER_NOTES.to_owned() + PRECEDENCE)]
     Render(Box<RenderArgs>),
+    /// Open a window to see and tune ambient light live
+    #[command(after_long_help = VIEW_NOTES.to_owned() + PRECEDENCE)]
+    View(Box<ViewArgs>),
     /// Evaluate ambient light at points of a list instead of pixels
     #[command(after_long_help = PRECEDENCE)]
     Query(Box<QueryArgs>),
@@ -75,7 +80,8 @@ pub struct SettingsArgs {
     /// Read settings from a TOML file, or from a picture that ambray wrote
     #[arg(long, value_name = "FILE", help_heading = "Settings")]
     pub settings: Option<PathBuf>,
-    /// Write all settings in use to a TOML file, from which --settings makes the same picture again
+    /// Write all settings in use to a TOML file, from which --settings makes the same picture again; of a window, those in
+    /// use when it is closed
     #[arg(long, value_name = "FILE.toml", help_heading = "Settings")]
     pub save_settings: Option<PathBuf>,
     /// Settings given as flags.
@@ -314,7 +320,7 @@ fn whole<T: FromStr + PartialOrd + Display>(text: &str, least: T, most: T) -> Re
 /// The command line as clap knows it, with the default of each setting in its help.
 #[must_use]
 pub fn command() -> clap::Command {
-    let with_settings = ["render", "query", "bench"];
+    let with_settings = ["render", "view", "query", "bench"];
     let command = Cli::command().args_override_self(true);
     with_settings.into_iter().fold(command, |command, name| {
         command.mut_subcommand(name, |sub| sub.mut_args(|arg| describe_setting(lenient(arg))))

@@ -32,7 +32,8 @@ where
     terminal::log_warnings();
     let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
     let outcome = match args::parse_from(&arguments) {
-        Ok(command) => signals::install()
+        // A window is closed by Ctrl-C at once: there is nothing half done that it would have to finish.
+        Ok(command) => (if matches!(command, Command::View(_)) { Ok(()) } else { signals::install() })
             .and_then(|()| dispatch(&command))
             // Devices are closed by now, which the layer may have had something to say about.
             .and_then(|()| terminal::check_validation()),
@@ -51,6 +52,7 @@ where
 fn dispatch(command: &Command) -> anyhow::Result<()> {
     match command {
         Command::Render(args) => commands::render::run(args),
+        Command::View(args) => commands::view::run(args),
         Command::Query(args) => commands::query::run(args),
         Command::Bench(args) => commands::bench::run(args),
         Command::Info(args) => commands::info::run(args),

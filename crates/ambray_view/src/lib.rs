@@ -4,6 +4,7 @@
 //! and exports on threads of its own, and answers with [`Event`](engine::Event)s. [`App`](app::App) joins the two with the
 //! [`canvas`] (the picture, the camera, the divider) and the [`panels`] around it; it knows no window, and is tested
 //! without one. The [`shell`] gives it a window.
+#![deny(unsafe_code)]
 
 pub mod app;
 pub mod camera;
@@ -13,3 +14,5 @@ pub mod memory;
 pub mod model;
 pub mod panels;
 pub mod shell;
+
+pub use shell::{ViewOptions, run};

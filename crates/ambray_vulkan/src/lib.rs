@@ -27,6 +27,7 @@ mod state;
 mod tables;
 #[doc(hidden)]
 pub mod testing;
+pub mod window;
 
 pub use acceleration::{
     Acceleration, AccelerationOptions, AccelerationStats, Bounds, Culling, GeometryKind, Grouping, Placement,
@@ -35,7 +36,7 @@ pub use acceleration::{
 pub use backend::{VulkanBackend, VulkanOptions};
 pub use commands::{CommandSet, Recorder, Timing, Work};
 pub use context::{
-    Capability, Context, DeviceKind, DeviceOptions, DeviceReport, Limits, Live, Need, VALIDATION_LOG,
+    Capability, Context, DeviceKind, DeviceOptions, DeviceReport, Limits, Live, NativeWindow, Need, VALIDATION_LOG,
     ValidationLog, choose, probe,
 };
 pub use device::Device;

@@ -10,6 +10,7 @@ Examples:
   ambray render scene.glb --time 1.25 -o moment.png
   ambray render scene.glb --frames 0..120 --fps 24 -o out/frame_####.png
   ambray render scene.glb -o turn.mp4          the whole animation as a video, with ffmpeg (.gif without)
+  ambray view scene.glb                        a window: turn the camera, tune the light, copy the command line
   ambray query scene.glb --points points.csv -o openness.csv
   ambray bench --frames 200 --json
   ambray bench flock --animate                 what it costs to follow an animation
@@ -56,5 +57,30 @@ Videos:
   GIF needs nothing else: 256 colours a frame, up to 50 frames a second, beginnings of frames rounded to hundredths of a \
 second, repeated for ever. MP4 (H.264, even sides), WebM (VP9) and animated WebP need ffmpeg on the path. Every so many \
 frames (:STEP) are shown as much longer. The video appears when it is complete; Ctrl-C leaves none.
+
+";
+
+pub(super) const VIEW_NOTES: &str = "\
+In the window, ? lists what hands and keys do. 'Copy as command line' gives the call of ambray render that makes the picture \
+that is shown. The window needs a display; it draws with Vulkan where a graphics card renders, else with OpenGL.
+
+Steps of --script; places and sizes are pixels of the window:
+  wait                       until the final pictures are shown
+  open PATH, drop PATH       open a scene; drop a file on the window
+  set NAME VALUE             change a setting of the side that is edited
+  side a|b                   edit that side
+  compare off|split|difference
+  divider SHARE              0 left to 1 right
+  aov NAME                   show another plane
+  resize WIDTH HEIGHT
+  key KEY, type TEXT         F, ?, Ctrl+Z; text into a field
+  move X Y, click X Y, double-click X Y, scroll X Y LINES
+  drag X Y DX DY [left|middle|right]
+  screenshot FILE.png        what is on the window
+  copy FILE                  the command line that renders the picture
+  expect error TEXT          fail unless a message of an error holds the text
+  expect no-error            fail if there is one
+  quit                       close the window; the end of the script does, too
+A step that fails ends the program with exit code 2 and names its line.
 
 ";

@@ -12,6 +12,7 @@ pub mod render;
 mod sequence;
 mod thin_cost;
 mod video;
+pub mod view;
 
 use ambray::{
     Control, RenderError, Renderer, RendererOptions,

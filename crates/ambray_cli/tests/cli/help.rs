@@ -8,7 +8,7 @@ fn help_names_commands_examples_and_exit_codes() {
     let bench = Bench::new();
     let help = bench.run(&["--help"]).succeeds().text();
     for part in
-        ["render", "query", "bench", "info", "completions", "ambray render scene.glb", "130 interrupted"]
+        ["render", "view", "query", "bench", "info", "completions", "ambray render scene.glb", "130 interrupted"]
     {
         assert!(help.contains(part), "{part} is missing in\n{help}");
     }

@@ -63,6 +63,17 @@ impl CommandSet {
     /// Waits for the last submission, then records commands with `record` and submits them. If `record` fails, nothing is
     /// submitted. What the commands use must live until [`wait`](Self::wait) returns, or this call of the next round.
     pub fn submit<T>(&mut self, record: impl FnOnce(&mut Recorder<'_>) -> Result<T>) -> Result<T> {
+        self.submit_between(None, None, record)
+    }
+
+    /// As [`submit`](Self::submit): the first semaphore is waited for before colours are written, the second is signalled when
+    /// all is done. Both must be of this device, and stay until the submission is through.
+    pub(crate) fn submit_between<T>(
+        &mut self,
+        before: Option<vk::Semaphore>,
+        after: Option<vk::Semaphore>,
+        record: impl FnOnce(&mut Recorder<'_>) -> Result<T>,
+    ) -> Result<T> {
         self.finish()?;
         let RawSet { ref context, pool, buffer, fence, queries } = self.raw;
         let device = &context.device;
@@ -84,9 +95,14 @@ impl CommandSet {
         let value = record(&mut recorder)?;
         self.labels = recorder.labels;
         let buffers = [buffer];
-        let submits = [vk::SubmitInfo::default().command_buffers(&buffers)];
-        // SAFETY: the buffer is being recorded and ends here; the fence is not in use, as was waited for; the queue is
-        // locked while it takes the submission.
+        let stages = [vk::PipelineStageFlags::COLOR_ATTACHMENT_OUTPUT];
+        let submits = [vk::SubmitInfo::default()
+            .wait_semaphores(before.as_slice())
+            .wait_dst_stage_mask(&stages[..before.as_slice().len()])
+            .signal_semaphores(after.as_slice())
+            .command_buffers(&buffers)];
+        // SAFETY: the buffer is being recorded and ends here; the fence is not in use, as was waited for; the semaphores are
+        // alive, as the caller promises; the queue is locked while it takes the submission.
         unsafe {
             device.end_command_buffer(buffer).map_err(VulkanError::of("vkEndCommandBuffer"))?;
             device.reset_fences(&[fence]).map_err(VulkanError::of("vkResetFences"))?;

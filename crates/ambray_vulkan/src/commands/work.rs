@@ -19,6 +19,8 @@ pub enum Work {
     Compute,
     /// Arguments of indirect calls are read.
     Indirect,
+    /// Shaders that draw sample images.
+    Draw,
     /// All of the above on the device: for places that are not worth a thought.
     Everything,
 }
@@ -46,6 +48,7 @@ impl Work {
             Self::Compute if queries => (S::COMPUTE_SHADER, shader | A::ACCELERATION_STRUCTURE_READ_KHR),
             Self::Compute => (S::COMPUTE_SHADER, shader),
             Self::Indirect => (S::DRAW_INDIRECT, A::INDIRECT_COMMAND_READ),
+            Self::Draw => (S::FRAGMENT_SHADER, A::SHADER_READ),
             Self::Everything => (S::ALL_COMMANDS, A::MEMORY_READ | A::MEMORY_WRITE),
         }
     }

@@ -24,7 +24,7 @@ pub(super) fn open(
     let Some((queue_family, timestamp_bits)) = probe::queue_family(&instance.raw, physical) else {
         return Err(VulkanError::Missing { device: report.name, feature: "compute queue".into() });
     };
-    let device = create(&instance.raw, physical, &report, queue_family)?;
+    let device = create(&instance, physical, &report, queue_family)?;
     let heap = report.memory;
     let allocator = Allocator::new(&AllocatorCreateDesc {
         instance: instance.raw.clone(),
@@ -57,13 +57,15 @@ pub(super) fn open(
     })
 }
 
-/// Makes the device with exactly the features that are needed, which `report` says are there.
+/// Makes the device with exactly the features that are needed, which `report` says are there, and what drawing into the
+/// window takes if the instance has one.
 fn create(
-    instance: &ash::Instance,
+    with: &Instance,
     physical: vk::PhysicalDevice,
     report: &DeviceReport,
     queue_family: u32,
 ) -> Result<ash::Device> {
+    let instance = &with.raw;
     let has = probe::extensions(instance, physical)?;
     let mut names =
         vec![khr::deferred_host_operations::NAME.as_ptr(), khr::acceleration_structure::NAME.as_ptr()];
@@ -89,6 +91,9 @@ fn create(
     if report.query {
         names.push(khr::ray_query::NAME.as_ptr());
         info = info.push_next(&mut query);
+    }
+    if with.surface().is_some() {
+        names.push(khr::swapchain::NAME.as_ptr());
     }
     // A device that offers it must be given it.
     if has(khr::portability_subset::NAME) {

@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use ash::{ext, khr, vk};
 
+use super::surface::{self, NativeWindow, Surface};
 use crate::error::{Result, VulkanError};
 
 const VALIDATION_LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
@@ -38,14 +39,16 @@ pub(crate) struct Instance {
     pub(crate) raw: ash::Instance,
     pub(crate) has_debug_utils: bool,
     messenger: Option<(ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
+    surface: Option<Surface>,
     log: ValidationLog,
     /// Unloads the library when dropped, hence after all else.
     _entry: ash::Entry,
 }
 
 impl Instance {
-    /// Loads Vulkan; with the validation layer and its checks of synchronisation if `validation`.
-    pub(crate) fn new(validation: bool) -> Result<Self> {
+    /// Loads Vulkan; with the validation layer and its checks of synchronisation if `validation`, and able to draw into
+    /// `window` if there is one.
+    pub(crate) fn new(validation: bool, window: Option<Arc<dyn NativeWindow>>) -> Result<Self> {
         // SAFETY: running the initialisers of the system's Vulkan loader is what every Vulkan program does. The library
         // stays loaded as long as the entry, which the returned value keeps beyond everything loaded through it.
         let entry = unsafe { ash::Entry::load() }
@@ -67,6 +70,16 @@ impl Instance {
         if debug_utils {
             names.push(ext::debug_utils::NAME.as_ptr());
         }
+        let for_window = window.as_deref().map(surface::extensions).transpose()?.unwrap_or_default();
+        for &name in for_window {
+            // SAFETY: the names are constants of the library, terminated.
+            let name = unsafe { CStr::from_ptr(name) };
+            if !has(&extensions, name) {
+                let feature = name.to_string_lossy().into_owned();
+                return Err(VulkanError::Missing { device: "this installation of Vulkan".into(), feature });
+            }
+        }
+        names.extend(for_window);
         let mut layers = Vec::new();
         let enabled = [vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
         let mut checks = vk::ValidationFeaturesEXT::default().enabled_validation_features(&enabled);
@@ -94,9 +107,13 @@ impl Instance {
         // named in it were found above. The list of messages, which is used later, outlives the instance (see `Drop`).
         let raw =
             unsafe { entry.create_instance(&info, None) }.map_err(VulkanError::of("vkCreateInstance"))?;
-        let mut instance = Self { raw, has_debug_utils: debug_utils, messenger: None, log, _entry: entry };
+        let mut instance =
+            Self { raw, has_debug_utils: debug_utils, messenger: None, surface: None, log, _entry: entry };
         if debug_utils {
             instance.listen()?;
+        }
+        if let Some(window) = window {
+            instance.surface = Some(Surface::new(&instance._entry, &instance.raw, window)?);
         }
         Ok(instance)
     }
@@ -113,6 +130,11 @@ impl Instance {
             .map_err(VulkanError::of("vkCreateDebugUtilsMessengerEXT"))?;
         self.messenger = Some((loader, messenger));
         Ok(())
+    }
+
+    /// The surface of the window that it was made for.
+    pub(crate) const fn surface(&self) -> Option<&Surface> {
+        self.surface.as_ref()
     }
 
     /// What the validation layer says.
@@ -133,8 +155,9 @@ impl Instance {
 
 impl Drop for Instance {
     fn drop(&mut self) {
+        self.surface = None;
         // SAFETY: devices of the instance are destroyed before: contexts drop theirs before this field, and nothing else
-        // makes devices. The messenger goes first since it belongs to the instance.
+        // makes devices. Surface and messenger go first since they belong to the instance.
         unsafe {
             if let Some((loader, messenger)) = self.messenger.take() {
                 loader.destroy_debug_utils_messenger(messenger, None);

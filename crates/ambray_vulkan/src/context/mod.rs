@@ -5,6 +5,7 @@ mod device;
 mod instance;
 mod limits;
 mod probe;
+mod surface;
 
 use std::mem::ManuallyDrop;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -18,6 +19,8 @@ use self::instance::Instance;
 pub use self::instance::{VALIDATION_LOG, ValidationLog};
 pub use self::limits::Limits;
 pub use self::probe::{Capability, DeviceKind, DeviceReport, Need, probe};
+pub use self::surface::NativeWindow;
+pub(crate) use self::surface::Surface;
 use crate::error::Result;
 
 /// Which device to use, and how.
@@ -77,11 +80,26 @@ pub(crate) struct LiveCounters {
 impl Context {
     /// Opens the device that `options` mean.
     pub fn new(options: &DeviceOptions) -> Result<Arc<Self>> {
-        let instance = Instance::new(options.validation)?;
+        Self::open(options, None)
+    }
+
+    /// Opens the device that `options` mean, to draw into `window` as well: it must be able to. The window is kept as long as
+    /// the context.
+    pub fn for_window(options: &DeviceOptions, window: Arc<dyn NativeWindow>) -> Result<Arc<Self>> {
+        Self::open(options, Some(window))
+    }
+
+    fn open(options: &DeviceOptions, window: Option<Arc<dyn NativeWindow>>) -> Result<Arc<Self>> {
+        let instance = Instance::new(options.validation, window)?;
         let devices = instance.physical_devices()?;
-        let reports = (devices.iter().enumerate())
+        let mut reports = (devices.iter().enumerate())
             .map(|(number, &device)| probe::report(&instance.raw, number, device))
             .collect::<Result<Vec<_>>>()?;
+        if let Some(surface) = instance.surface() {
+            for (report, &device) in reports.iter_mut().zip(&devices) {
+                report.missing.extend(surface.missing(&instance.raw, device)?);
+            }
+        }
         let index = choose::choose(&reports, options)?;
         device::open(instance, devices[index], reports[index].clone()).map(Arc::new)
     }
@@ -161,6 +179,11 @@ impl Context {
             bytes: read(&self.live.bytes),
             acceleration_structures: read(&self.live.acceleration_structures),
         }
+    }
+
+    /// The surface of the window that the context was opened for.
+    pub(crate) const fn surface(&self) -> Option<&Surface> {
+        self.instance.surface()
     }
 
     pub(crate) const fn counters(&self) -> &LiveCounters {

@@ -93,7 +93,7 @@ impl DeviceKind {
 
 /// Lists all Vulkan devices of this machine, usable or not.
 pub fn probe() -> Result<Vec<DeviceReport>> {
-    let instance = Instance::new(false)?;
+    let instance = Instance::new(false, None)?;
     let devices = instance.physical_devices()?;
     devices.iter().enumerate().map(|(number, &device)| report(&instance.raw, number, device)).collect()
 }

@@ -122,13 +122,13 @@ pub(super) fn push_stages(context: &Context) -> vk::ShaderStageFlags {
 }
 
 /// A shader module, destroyed with the value: pipelines do not need it once they are made.
-pub(super) struct Module<'a> {
+pub(crate) struct Module<'a> {
     context: &'a Context,
-    pub(super) handle: vk::ShaderModule,
+    pub(crate) handle: vk::ShaderModule,
 }
 
 impl<'a> Module<'a> {
-    pub(super) fn new(context: &'a Context, spirv: &[u8]) -> Result<Self> {
+    pub(crate) fn new(context: &'a Context, spirv: &[u8]) -> Result<Self> {
         let words: Vec<u32> = bytemuck::pod_collect_to_vec(spirv);
         let info = vk::ShaderModuleCreateInfo::default().code(&words);
         // SAFETY: the words are a module that was compiled for Vulkan 1.2, and live until the call returns.

@@ -15,7 +15,7 @@ use crate::{
 
 pub(crate) use cache::ProgramCache;
 pub(crate) use compute::ComputePipeline;
-pub(crate) use interface::Interface;
+pub(crate) use interface::{Interface, Module};
 
 use ray_tracing::RayTracingPipeline;
 

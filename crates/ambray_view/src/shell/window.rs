@@ -1,0 +1,275 @@
+//! The window itself: what the system says, in the order of its life.
+
+use std::{
+    sync::Arc,
+    time::{Duration, Instant},
+};
+
+use ambray::settings::Settings;
+use anyhow::Context as _;
+use egui::{ViewportEvent, ViewportId, ViewportInfo};
+use winit::{
+    application::ApplicationHandler,
+    dpi::LogicalSize,
+    event::{ElementState, KeyEvent, WindowEvent},
+    event_loop::{ActiveEventLoop, ControlFlow, EventLoopProxy},
+    keyboard::{Key, NamedKey},
+    window::{Fullscreen, Window, WindowAttributes, WindowId},
+};
+
+use super::{
+    ViewOptions, Wake,
+    gl::Gl,
+    icon::icon,
+    present::{Painting, Presenter},
+    script::{Runner, Script, Wish},
+};
+use crate::{
+    app::App,
+    engine::{Engine, EngineOptions, Wake as EngineWake},
+    model::Model,
+};
+
+/// Size of the window where none is remembered, points.
+const SIZE: LogicalSize<f64> = LogicalSize::new(1440.0, 900.0);
+/// Smallest size that has room for the panels, points.
+const LEAST: LogicalSize<f64> = LogicalSize::new(480.0, 320.0);
+/// How often a script that waits looks whether it has waited for too long.
+const PATROL: Duration = Duration::from_millis(200);
+
+/// The window with everything in it, or what is needed to open it.
+pub(super) struct Shell {
+    options: ViewOptions,
+    proxy: EventLoopProxy<Wake>,
+    script: Option<Script>,
+    open: Option<Open>,
+    failure: Option<anyhow::Error>,
+}
+
+/// A window that is open. Fields are dropped in this order.
+struct Open {
+    app: App,
+    presenter: Box<dyn Presenter>,
+    system: egui_winit::State,
+    info: ViewportInfo,
+    script: Option<Runner>,
+    /// When the next frame is to be drawn, if ever.
+    draw_at: Option<Instant>,
+    title: String,
+    is_visible: bool,
+    window: Window,
+}
+
+impl Shell {
+    pub(super) fn new(options: ViewOptions, script: Option<Script>, proxy: EventLoopProxy<Wake>) -> Self {
+        Self { options, proxy, script, open: None, failure: None }
+    }
+
+    /// What is left of the window: the settings that were edited last, or what went wrong.
+    pub(super) fn finish(self) -> anyhow::Result<Settings> {
+        let settings = match &self.open {
+            Some(open) => open.app.model.of(open.app.model.editing).clone(),
+            None => self.options.settings,
+        };
+        self.failure.map_or(Ok(settings), Err)
+    }
+
+    fn open(&mut self, event_loop: &ActiveEventLoop) -> anyhow::Result<Open> {
+        let options = &self.options;
+        let title = title(&options.scene.path.display().to_string());
+        let attributes = WindowAttributes::default()
+            .with_title(&title)
+            .with_inner_size(SIZE)
+            .with_min_inner_size(LEAST)
+            .with_window_icon(icon())
+            // Shown when there is something to see.
+            .with_visible(false);
+        let (window, presenter) = Gl::open(event_loop, attributes)?;
+        let presenter: Box<dyn Presenter> = Box::new(presenter);
+
+        let context = egui::Context::default();
+        let proxy = self.proxy.clone();
+        context.set_request_repaint_callback(move |request| {
+            // A moment too far away to name never comes.
+            if let Some(at) = Instant::now().checked_add(request.delay) {
+                // A window that is closed draws nothing.
+                let _ = proxy.send_event(Wake::Draw(at));
+            }
+        });
+        let system = egui_winit::State::new(
+            context,
+            ViewportId::ROOT,
+            &window,
+            Some(window.scale_factor() as f32),
+            window.theme(),
+            Some(presenter.max_texture_side()),
+        );
+        let proxy = self.proxy.clone();
+        let engine = Engine::new(EngineOptions {
+            renderer: options.renderer.clone(),
+            threads: options.threads,
+            keeps_on_device: false,
+            wake: EngineWake(Arc::new(move || {
+                let _ = proxy.send_event(Wake::Engine);
+            })),
+        });
+        let app = App::new(Model::new(options.scene.clone(), options.settings.clone()), engine);
+        let script = self.script.take().map(Runner::new);
+        let info = ViewportInfo::default();
+        Ok(Open { app, presenter, system, info, script, draw_at: Some(Instant::now()), title, is_visible: false, window })
+    }
+
+    /// Does `work` with the window; closes it if that fails.
+    fn attempt(
+        &mut self,
+        event_loop: &ActiveEventLoop,
+        work: impl FnOnce(&mut Open, &ActiveEventLoop) -> anyhow::Result<()>,
+    ) {
+        let Some(open) = &mut self.open else { return };
+        if let Err(error) = work(open, event_loop) {
+            self.failure.get_or_insert(error);
+            event_loop.exit();
+        }
+    }
+}
+
+impl Open {
+    /// One frame.
+    fn draw(&mut self, event_loop: &ActiveEventLoop) -> anyhow::Result<()> {
+        self.draw_at = None;
+        let size = self.window.inner_size();
+        if size.width == 0 || size.height == 0 {
+            return Ok(()); // minimised; what brings it back is an event
+        }
+        if let Some(script) = &mut self.script {
+            script.begin_frame(&mut self.app, &self.window, &mut self.system)?;
+        }
+        let context = self.system.egui_ctx().clone();
+        egui_winit::update_viewport_info(&mut self.info, &context, &self.window, false);
+        let mut input = self.system.take_egui_input(&self.window);
+        input.viewports.insert(ViewportId::ROOT, std::mem::take(&mut self.info));
+        if let Some(script) = &mut self.script {
+            script.add_input(&mut input);
+        }
+        let output = context.run_ui(input, |ui| self.app.ui(ui));
+        self.system.handle_platform_output(&self.window, output.platform_output);
+        for (_, viewport) in output.viewport_output {
+            let actions = &mut Vec::new(); // cut, copy and paste come as events already
+            egui_winit::process_viewport_commands(
+                &context,
+                &mut self.info,
+                viewport.commands,
+                &self.window,
+                actions,
+            );
+        }
+        let painting = Painting {
+            primitives: context.tessellate(output.shapes, output.pixels_per_point),
+            textures: output.textures_delta,
+            pixels_per_point: output.pixels_per_point,
+            wants_copy: self.script.as_ref().is_some_and(Runner::wants_copy),
+        };
+        let copy = self.presenter.paint(&self.window, painting)?;
+        if !std::mem::replace(&mut self.is_visible, true) {
+            self.window.set_visible(true);
+        }
+        self.retitle();
+        if self.info.events.contains(&ViewportEvent::Close) {
+            event_loop.exit();
+        }
+        if let Some(script) = &mut self.script {
+            match script.end_frame(&self.app, &self.window, copy)? {
+                Wish::NextFrame => self.draw_by(Instant::now()),
+                Wish::News => self.draw_by(Instant::now() + PATROL),
+                Wish::Close => event_loop.exit(),
+            }
+        }
+        Ok(())
+    }
+
+    /// Sees to it that a frame is drawn at `at`, or before.
+    fn draw_by(&mut self, at: Instant) {
+        self.draw_at = Some(self.draw_at.map_or(at, |before| before.min(at)));
+    }
+
+    fn on_event(&mut self, event_loop: &ActiveEventLoop, event: &WindowEvent) -> anyhow::Result<()> {
+        match event {
+            WindowEvent::RedrawRequested => return self.draw(event_loop),
+            WindowEvent::CloseRequested | WindowEvent::Destroyed => event_loop.exit(),
+            WindowEvent::Resized(size) => self.presenter.resize(*size),
+            WindowEvent::KeyboardInput {
+                event:
+                    KeyEvent {
+                        logical_key: Key::Named(NamedKey::F11),
+                        state: ElementState::Pressed,
+                        repeat: false,
+                        ..
+                    },
+                ..
+            } => {
+                let is_full = self.window.fullscreen().is_some();
+                self.window.set_fullscreen((!is_full).then_some(Fullscreen::Borderless(None)));
+            }
+            _ => {}
+        }
+        if self.system.on_window_event(&self.window, event).repaint {
+            self.draw_by(Instant::now());
+        }
+        Ok(())
+    }
+
+    /// Names the scene in the window's title.
+    fn retitle(&mut self) {
+        let title = title(&self.app.model.scene.path.display().to_string());
+        if title != self.title {
+            self.window.set_title(&title);
+            self.title = title;
+        }
+    }
+}
+
+impl ApplicationHandler<Wake> for Shell {
+    fn resumed(&mut self, event_loop: &ActiveEventLoop) {
+        if self.open.is_some() {
+            return;
+        }
+        match self.open(event_loop).context("the window cannot be opened") {
+            Ok(open) => self.open = Some(open),
+            Err(error) => {
+                self.failure = Some(error);
+                event_loop.exit();
+            }
+        }
+    }
+
+    fn user_event(&mut self, _: &ActiveEventLoop, wake: Wake) {
+        let Some(open) = &mut self.open else { return };
+        open.draw_by(match wake {
+            Wake::Engine => Instant::now(),
+            Wake::Draw(at) => at,
+        });
+    }
+
+    fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        self.attempt(event_loop, |open, event_loop| open.on_event(event_loop, &event));
+    }
+
+    fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
+        let Some(open) = &mut self.open else { return };
+        // Drawn when the system says so, which is once a refresh of the screen; asleep otherwise.
+        event_loop.set_control_flow(match open.draw_at {
+            Some(at) if at <= Instant::now() => {
+                open.draw_at = None;
+                open.window.request_redraw();
+                ControlFlow::Wait
+            }
+            Some(at) => ControlFlow::WaitUntil(at),
+            None => ControlFlow::Wait,
+        });
+    }
+}
+
+/// The window's title while it shows `scene`.
+fn title(scene: &str) -> String {
+    format!("{scene} – Ambray")
+}
