@@ -20,14 +20,11 @@ modules! {
     ASSIGN = "assign.comp";
     MEASURE = "measure.comp";
     COST = "cost.comp";
-<<<<<<< HEAD
     SUMS = "sums.comp";
     BOUNDS = "bounds.comp";
     SHOW = "show.comp";
-=======
     PAINT_VERTEX = "paint.vert";
     PAINT_FRAGMENT = "paint.frag";
->>>>>>> c30ea3e (view: the window: OpenGL, scripts; ambray view)
     CLOSEST_HIT = "hit.rchit";
     MISS = "miss.rmiss";
     MASKED_ANY_HIT = "masked.rahit";

@@ -11,9 +11,9 @@ pub fn run(args: &ViewArgs) -> anyhow::Result<()> {
     };
     use ambray_view::{ViewOptions, model::SceneRef};
 
-    use crate::args::Grouping;
+    use crate::{args::Grouping, settings};
 
-    let settings = settings_file::resolve(&args.settings)?;
+    let settings = settings::resolve(&args.settings)?;
     let saved = args.settings.save_settings.as_deref().map(Target::of);
     if let Some(saved) = &saved {
         saved.check()?;
