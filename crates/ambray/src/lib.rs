@@ -20,6 +20,7 @@
 
 mod backend;
 mod device;
+mod drawn;
 mod framing;
 mod renderer;
 mod resolve;
@@ -42,7 +43,8 @@ pub use ambray_scene as scene;
 pub use ambray_vulkan as vulkan;
 pub use ambray_vulkan::Device;
 pub use backend::{BackendChoice, RendererOptions};
-pub use renderer::{BuildStats, DeviceFrame, Drawn, Machine, RenderError, Renderer};
+pub use drawn::{DeviceFrame, Drawn};
+pub use renderer::{BuildStats, Machine, RenderError, Renderer};
 
 /// The code in the README compiles.
 #[cfg(doctest)]

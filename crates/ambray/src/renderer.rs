@@ -21,7 +21,7 @@ use ambray_vulkan::{AccelerationStats, DeviceReport, Picture, TraceMode, VulkanE
 use glam::Vec3;
 
 use crate::{
-    BackendChoice, Device, RendererOptions,
+    BackendChoice, Device, DeviceFrame, Drawn, RendererOptions,
     backend::{Backend, Backends},
     device::{DeviceTrace, DeviceWorld},
     framing::Framing,
@@ -128,44 +128,6 @@ pub enum Machine {
         /// How it traces rays.
         trace: TraceMode,
     },
-}
-
-/// A frame, where it was rendered.
-#[derive(Clone, Debug)]
-pub enum Drawn {
-    /// On the processor.
-    Host(Box<Frame>),
-    /// On a device, where it stays: see [`Renderer::show`] and [`Renderer::read_frame`].
-    Device(Box<DeviceFrame>),
-}
-
-/// What is known on the host about a frame that stays on a device.
-#[derive(Clone, Debug)]
-pub struct DeviceFrame {
-    /// The view with everything chosen: camera, radius, lights.
-    pub view: View,
-    /// What it took.
-    pub stats: FrameStats,
-}
-
-impl Drawn {
-    /// The view with everything chosen.
-    #[must_use]
-    pub const fn view(&self) -> &View {
-        match self {
-            Self::Host(frame) => &frame.view,
-            Self::Device(frame) => &frame.view,
-        }
-    }
-
-    /// What it took.
-    #[must_use]
-    pub const fn stats(&self) -> &FrameStats {
-        match self {
-            Self::Host(frame) => &frame.stats,
-            Self::Device(frame) => &frame.stats,
-        }
-    }
 }
 
 /// A scene made ready for tracing.
@@ -375,11 +337,7 @@ impl Renderer {
                 Ok(Drawn::Device(Box::new(DeviceFrame { view: view.clone(), stats })))
             }
         })?;
-        let times = match &mut drawn {
-            Drawn::Host(frame) => &mut frame.stats.times,
-            Drawn::Device(frame) => &mut frame.stats.times,
-        };
-        add(times, &moved);
+        add(&mut drawn.stats_mut().times, &moved);
         Ok(drawn)
     }
 

@@ -9,6 +9,7 @@ mod context;
 pub mod cost;
 mod device;
 mod display;
+mod drawing;
 mod error;
 mod history;
 pub mod layout;

@@ -9,7 +9,7 @@ use bytemuck::Pod;
 use glam::{Vec2, Vec3, Vec4};
 
 use crate::{
-    Buffer, Location, Picture, Result, VulkanBackend, Work,
+    Buffer, Context, Location, Picture, Result, VulkanBackend, Work,
     constants::SampleTables,
     layout::{ARGUMENTS, NONE, Push, QUERY_HEIGHT, QUERY_WIDTH, Specialization, VALUES},
     pipeline::{ComputePipeline, Interface},
@@ -71,6 +71,18 @@ impl<'a> Functions<'a> {
     }
 }
 
+/// The bytes of a picture: red, green, blue and alpha of each pixel, row by row from the top.
+pub fn picture_bytes(context: &Arc<Context>, picture: &Picture) -> Result<Vec<u8>> {
+    let (width, height) = picture.size();
+    let size = 4 * u64::from(width) * u64::from(height);
+    let pixels = context.buffer("bytes", size, BufferUsageFlags::TRANSFER_DST, Location::Readback)?;
+    context.run(|recorder| {
+        recorder.fetch(picture, &pixels);
+        Ok(())
+    })?;
+    Ok(pixels.read(0, size as usize))
+}
+
 impl VulkanBackend {
     /// Cuts frames into submissions of at most `rays` rays, and of one row at least.
     pub fn limit_submissions(&self, rays: u64) {
@@ -104,19 +116,6 @@ impl VulkanBackend {
             Ok(())
         })?;
         Ok(copy.read(0, count as usize))
-    }
-
-    /// The bytes of a picture: red, green, blue and alpha of each pixel, row by row from the top.
-    pub fn picture_bytes(&self, picture: &Picture) -> Result<Vec<u8>> {
-        let (width, height) = picture.size();
-        let size = 4 * u64::from(width) * u64::from(height);
-        let pixels =
-            self.context().buffer("bytes", size, BufferUsageFlags::TRANSFER_DST, Location::Readback)?;
-        self.context().run(|recorder| {
-            recorder.fetch(picture, &pixels);
-            Ok(())
-        })?;
-        Ok(pixels.read(0, size as usize))
     }
 
     /// Takes the same points of the unit square for every pixel, as long as the sampling of `settings` stays.

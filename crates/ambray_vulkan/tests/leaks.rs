@@ -9,6 +9,7 @@ mod scenes;
 use std::sync::Arc;
 
 use ambray_core::{
+    aov::Aov,
     control::Control,
     settings::{Falloff, NearRadiance, RadianceSource, Settings, Thin, Window},
 };
@@ -31,6 +32,8 @@ fn render(backend: &VulkanBackend, settings: &Settings, width: u32, height: u32)
     let frame = backend.render(settings, &view(settings, width, height), Control::default());
     let frame = frame.unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(frame.beauty.len(), (width * height) as usize);
+    let picture = backend.show(Aov::Depth, settings).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(picture.size(), (width, height));
 }
 
 /// Memory of the process that is in use; 0 where the system does not tell.
