@@ -16,8 +16,8 @@ use ambray_core::{
 use ambray_scene::{Scene, animation::Pose, surface::Surfaces};
 
 use crate::{
-    Acceleration, AccelerationOptions, AccelerationStats, Context, Culling, Device, DeviceKind, Picture,
-    Result, TraceMode, VulkanError,
+    Acceleration, AccelerationOptions, AccelerationStats, Context, Culling, Device, DeviceKind, Result,
+    TraceMode, VulkanError,
     layout::{Push, Specialization},
     motion::{Motion, Move},
     pipeline::TracePass,
