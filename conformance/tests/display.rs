@@ -4,7 +4,7 @@ use std::{sync::Arc, thread, time::Duration};
 
 use ambray::{
     Aov, BackendChoice, Control, Device, Drawn, RenderError, Renderer, RendererOptions, display,
-    scene::{Scene, atrium, moving},
+    scene::{Scene, moving},
     settings::{Auto, Settings, Size, ToneMap},
     vulkan::{Context, TraceMode, testing::picture_bytes},
 };
@@ -69,7 +69,7 @@ fn threads_open_scenes_and_show_them_on_one_device() {
     let Some(device) = device() else { return };
     let size = Size { width: 96, height: 54 };
     thread::scope(|scope| {
-        for (name, make) in [("atrium", atrium::atrium as fn() -> Scene), ("banner", moving::banner)] {
+        for (name, make) in [("flock", moving::flock as fn() -> Scene), ("banner", moving::banner)] {
             let device = &device;
             scope.spawn(move || {
                 let mut renderer = open(device, make());
