@@ -103,6 +103,22 @@ impl Plan {
         })
     }
 
+    /// Writes the plane `aov` of `frame` alone to `batch`, as PNG in the place of the picture.
+    pub fn write_plane(
+        &self,
+        frame: &Frame,
+        aov: Aov,
+        settings: &Settings,
+        scene: &str,
+        batch: &mut Batch,
+    ) -> anyhow::Result<()> {
+        let toml = settings_file::write(settings);
+        let bits = if self.format == Format::Png16 { Bits::Sixteen } else { Bits::Eight };
+        let picture = display::show(frame, aov, settings);
+        let size = (frame.width, frame.height);
+        batch.add(&self.main, |out| png::write(out, size, &picture, bits, &texts(scene, &toml)))
+    }
+
     /// Writes the files of `frame` to `batch`; the flag `cancel` ends it between two files.
     pub fn write(
         &self,
@@ -120,8 +136,7 @@ impl Plan {
             Format::Png8 => Bits::Eight,
             Format::Png16 => Bits::Sixteen,
         };
-        let texts =
-            [("Software", SOFTWARE), (SCENE_KEYWORD, scene), (settings_file::PNG_KEYWORD, toml.as_str())];
+        let texts = texts(scene, &toml);
         for (target, aov) in self.files() {
             let picture = display::show(frame, aov, settings);
             let size = (frame.width, frame.height);
@@ -130,6 +145,11 @@ impl Plan {
         }
         Ok(())
     }
+}
+
+/// What a PNG says of itself: keywords and texts.
+const fn texts<'a>(scene: &'a str, settings: &'a str) -> [(&'static str, &'a str); 3] {
+    [("Software", SOFTWARE), (SCENE_KEYWORD, scene), (settings_file::PNG_KEYWORD, settings)]
 }
 
 /// Whether the file at `path` is what [`Plan::write`] would write, as far as its head and its end tell.

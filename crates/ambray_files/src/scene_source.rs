@@ -1,7 +1,7 @@
 //! From the word for a scene to the scene in memory.
 
 use std::{
-    path::Path,
+    path::{Path, PathBuf},
     time::{Duration, Instant, SystemTime},
 };
 
@@ -28,6 +28,8 @@ pub struct Source {
     pub path: String,
     /// What pictures say they show: the path, with the scene within the file if one was asked for.
     pub label: String,
+    /// The files that it was read from, also those that could not be; none for built-in scenes.
+    pub files: Vec<PathBuf>,
     /// When the file was changed last, if the system tells.
     pub modified: Option<SystemTime>,
     /// What the loader had to say.
@@ -49,8 +51,8 @@ pub fn open(path: &Path, gltf_scene: Option<&str>) -> anyhow::Result<Source> {
     if gltf_scene.is_some() && (built_in.is_some() || is_obj) {
         bail!("--gltf-scene is not allowed with {}: only glTF files hold several scenes", path.display());
     }
-    let (scene, warnings) = if let Some((_, make)) = built_in {
-        (make(), Vec::new())
+    let (scene, warnings, files) = if let Some((_, make)) = built_in {
+        (make(), Vec::new(), Vec::new())
     } else {
         let loaded = load_with(path, &LoadOptions { scene: gltf_scene.map(choice) }).map_err(|error| {
             if path.exists() {
@@ -58,13 +60,14 @@ pub fn open(path: &Path, gltf_scene: Option<&str>) -> anyhow::Result<Source> {
             }
             with_hint(error, HINT)
         })?;
-        (loaded.scene, loaded.warnings)
+        (loaded.scene, loaded.warnings, loaded.files)
     };
     let name = path.display().to_string();
     Ok(Source {
         scene,
         label: gltf_scene.map_or_else(|| name.clone(), |scene| format!("{name}, scene {scene}")),
         path: name,
+        files,
         modified: path
             .metadata()
             .and_then(|metadata| metadata.modified())

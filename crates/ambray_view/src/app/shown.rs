@@ -5,7 +5,7 @@ use std::{collections::VecDeque, sync::Arc};
 use ambray::FrameStats;
 
 use crate::{
-    engine::{Difference, Event, Inspected, Level, Opened, Rendered},
+    engine::{Content, Difference, Event, Inspected, Level, Opened, Rendered},
     model::SceneRef,
 };
 
@@ -110,10 +110,19 @@ impl Shown {
                 self.is_stale[side] = false;
                 self.sides[side] = Some(*rendered);
             }
+            Event::Copied { side, frame: copy, aov, statistics } => {
+                if let Some(rendered) = &mut self.sides[side as usize]
+                    && let Content::Device { frame, .. } = &mut rendered.content
+                {
+                    *frame = Some(copy);
+                    rendered.statistics = Some(statistics).filter(|_| rendered.aov == aov);
+                }
+            }
             Event::Difference(difference) => self.difference = Some(*difference),
             Event::Inspected(inspected) => self.inspected = Some(Arc::from(inspected)),
             Event::Progress { side, share } => self.progress[side as usize] = Some(share),
             Event::Refused { side, messages } => self.refused[side as usize] = messages,
+            Event::InspectFailed { message, .. } => self.notify(Severity::Error, message),
             Event::Exporting { share } => self.export = Some(share),
             Event::Exported { path } => {
                 self.export = None;

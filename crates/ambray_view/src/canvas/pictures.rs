@@ -67,6 +67,8 @@ impl Pictures {
                 texture.update(painter.ctx(), "picture", pixels, scaling);
                 texture.paint(painter, placement.picture);
             }
+            // The window that shares the device gives it a texture.
+            Content::Device { .. } => {}
         }
     }
 }
@@ -89,6 +91,7 @@ pub(super) fn frame_of(rendered: &Rendered) -> Option<&Frame> {
 pub(super) const fn shared_frame_of(rendered: &Rendered) -> Option<&Arc<Frame>> {
     match &rendered.content {
         Content::Host { frame, .. } => Some(frame),
+        Content::Device { frame, .. } => frame.as_ref(),
     }
 }
 

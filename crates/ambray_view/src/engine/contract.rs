@@ -4,6 +4,7 @@ use std::{fmt, path::PathBuf, sync::Arc, time::Duration};
 
 use ambray::{
     Aov, BuildStats, Frame, FrameStats, Inspection, Machine, RendererOptions, View, settings::Settings,
+    vulkan::Picture,
 };
 use glam::Vec3;
 
@@ -78,6 +79,13 @@ pub enum Content {
         frame: Arc<Frame>,
         /// The plane that is shown.
         pixels: Arc<Pixels>,
+    },
+    /// In the memory of the device that renders; what stands still follows as [`Event::Copied`].
+    Device {
+        /// The plane that is shown. Whoever holds it has waited for the device to be done with it before it is dropped.
+        picture: Arc<Picture>,
+        /// All planes, once they are [copied](Event::Copied).
+        frame: Option<Arc<Frame>>,
     },
 }
 
@@ -232,6 +240,17 @@ pub enum Event {
     },
     /// A picture.
     Picture(Box<Rendered>),
+    /// The planes of the picture on the device that came last of its side, copied to the host.
+    Copied {
+        /// Of which side.
+        side: Side,
+        /// All planes.
+        frame: Arc<Frame>,
+        /// The plane that is shown.
+        aov: Aov,
+        /// Its values.
+        statistics: Arc<Statistics>,
+    },
     /// The pictures of both sides compared.
     Difference(Box<Difference>),
     /// What a pixel did, that [`Engine::inspect`](super::Engine::inspect) asked for.
@@ -242,6 +261,13 @@ pub enum Event {
         side: Side,
         /// Share.
         share: f32,
+    },
+    /// What a pixel did cannot be told.
+    InspectFailed {
+        /// Of which side.
+        side: Side,
+        /// Why, one line.
+        message: String,
     },
     /// Nothing can be rendered with the settings of a side.
     Refused {

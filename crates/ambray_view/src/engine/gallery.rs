@@ -33,18 +33,26 @@ pub(super) struct Shot {
 struct Hung {
     number: u64,
     shot: Arc<Shot>,
+    /// Whether the window has its picture from the device already.
+    on_device: bool,
 }
 
 /// How a side is shown.
 #[derive(Clone, Debug)]
-struct Look {
-    aov: Aov,
-    settings: Settings,
+pub(super) struct Look {
+    pub(super) aov: Aov,
+    pub(super) settings: Settings,
 }
 
 impl Look {
+    /// How `order` shows `side`.
+    pub(super) fn of(order: &Order, side: Side) -> Option<Self> {
+        let settings = order.sides[side as usize].clone()?;
+        Some(Self { aov: order.aov, settings })
+    }
+
     /// `frame` settings under this look.
-    fn over(&self, frame: &Settings) -> Settings {
+    pub(super) fn over(&self, frame: &Settings) -> Settings {
         let look = &self.settings;
         Settings {
             exposure: look.exposure,
@@ -55,7 +63,7 @@ impl Look {
         }
     }
 
-    fn is_same(&self, other: &Self) -> bool {
+    pub(super) fn is_same(&self, other: &Self) -> bool {
         let any = Settings::default();
         self.aov == other.aov && is_same(&self.over(&any), &other.over(&any))
     }
@@ -93,21 +101,28 @@ impl Gallery {
         Self { state: Mutex::default(), changed: Condvar::new(), outbox }
     }
 
-    /// Shows pictures as `order` says.
-    pub(super) fn look(&self, order: &Order) {
+    /// Shows pictures as `order` says; the picture of `on_device` is shown by the device.
+    pub(super) fn look(&self, order: &Order, on_device: Option<Side>) {
         let mut state = lock(&self.state);
-        let look = |settings: &Settings| Look { aov: order.aov, settings: settings.clone() };
-        state.looks = [0, 1].map(|i| order.sides[i].as_ref().map(look));
+        for hung in state.hung.iter_mut().flatten() {
+            hung.on_device &= on_device == Some(hung.shot.side);
+        }
+        state.looks = Side::ALL.map(|side| Look::of(order, side));
         state.comparison = order.comparison;
         self.changed.notify_all();
     }
 
-    /// Hangs a new picture.
-    pub(super) fn hang(&self, shot: Shot) {
+    /// Takes down the picture of `side`: there is a newer one elsewhere.
+    pub(super) fn take_down(&self, side: Side) {
+        lock(&self.state).hung[side as usize] = None;
+    }
+
+    /// Hangs a new picture; `on_device` if the window has it from the device already.
+    pub(super) fn hang(&self, shot: Shot, on_device: bool) {
         let mut state = lock(&self.state);
         state.count += 1;
         let (side, number) = (shot.side as usize, state.count);
-        state.hung[side] = Some(Hung { number, shot: Arc::new(shot) });
+        state.hung[side] = Some(Hung { number, shot: Arc::new(shot), on_device });
         self.changed.notify_all();
     }
 
@@ -143,6 +158,12 @@ impl Gallery {
     pub(super) fn run(&self) {
         while let Some(task) = self.wait() {
             match task {
+                Task::Picture(hung, look) if hung.on_device => {
+                    let (side, aov, frame) = (hung.shot.side, look.aov, Arc::clone(&hung.shot.frame));
+                    if let Ok(statistics) = caught(|| statistics(&frame.plane(aov), aov)) {
+                        self.deliver(&hung, Event::Copied { side, frame, aov, statistics });
+                    }
+                }
                 Task::Picture(hung, look) => {
                     let side = hung.shot.side;
                     match caught(|| rendered(&hung.shot, &look)) {
@@ -212,12 +233,15 @@ impl State {
     }
 }
 
+fn statistics(values: &[f32], aov: Aov) -> Arc<Statistics> {
+    Arc::new(Statistics::of(values, aov.channels().len()))
+}
+
 /// `shot` as the window takes it.
 fn rendered(shot: &Shot, look: &Look) -> Rendered {
     let settings = look.over(&shot.settings);
     let values = shot.frame.plane(look.aov);
     let pixels = shown::pixels(&shot.frame, look.aov, &values, &settings);
-    let statistics = Statistics::of(&values, look.aov.channels().len());
     Rendered {
         side: shot.side,
         settings,
@@ -228,7 +252,7 @@ fn rendered(shot: &Shot, look: &Look) -> Rendered {
         stats: shot.frame.stats,
         frame_bytes: frame_bytes(&shot.frame),
         content: Content::Host { frame: Arc::clone(&shot.frame), pixels },
-        statistics: Some(Arc::new(statistics)),
+        statistics: Some(statistics(&values, look.aov)),
     }
 }
 

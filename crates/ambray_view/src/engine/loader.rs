@@ -8,13 +8,14 @@ use std::{
         mpsc,
     },
     thread::JoinHandle,
-    time::Instant,
 };
 
 use ambray::{
-    BackendChoice, Control, RenderError, Renderer, RendererOptions,
-    scene::{LoadOptions, Scene, SceneChoice, atrium, load_with, moving},
+    Control, RenderError, Renderer, RendererOptions,
+    scene::Scene,
 };
+
+use ambray_files::scene_source;
 
 use super::{
     contract::{AnimationInfo, CameraInfo, Event, Opened},
@@ -33,14 +34,6 @@ pub(super) struct Ready {
     pub(super) opened: Opened,
     /// What pictures say they show.
     pub(super) label: String,
-}
-
-/// A scene as it was read.
-struct Source {
-    scene: Scene,
-    label: String,
-    warnings: Vec<String>,
-    files: Vec<PathBuf>,
 }
 
 /// A scene on its way.
@@ -105,7 +98,7 @@ impl Loader {
         for job in &jobs {
             job.cancel.store(true, Ordering::Relaxed);
         }
-        if self.options.backend != BackendChoice::Cpu {
+        if self.options.shared.is_some() {
             for job in jobs {
                 // It has told of its own panics.
                 let _ = job.thread.join();
@@ -134,10 +127,8 @@ impl Loader {
 
     fn load(&self, scene: &SceneRef, cancel: &AtomicBool) -> Result<(Ready, Vec<PathBuf>), String> {
         let tell = |stage, share| self.outbox.send(Event::Loading { scene: scene.clone(), stage, share });
-        let start = Instant::now();
         tell("reading", None);
-        let source = read(scene).map_err(|error| format!("{error:#}"))?;
-        let load_time = start.elapsed();
+        let source = scene_source::open(&scene.path, scene.gltf_scene.as_deref()).map_err(|error| format!("{error:#}"))?;
         if cancel.load(Ordering::Relaxed) {
             return Err(RenderError::Cancelled.to_string());
         }
@@ -150,7 +141,7 @@ impl Loader {
         let opened = Opened {
             scene: scene.clone(),
             warnings: source.warnings,
-            load_time,
+            load_time: source.load_time,
             build: renderer.build_stats(),
             machine: renderer.machine(),
             cameras: cameras(renderer.scene()),
@@ -160,24 +151,6 @@ impl Loader {
         };
         Ok((Ready { renderer, opened, label: source.label }, source.files))
     }
-}
-
-fn read(scene: &SceneRef) -> anyhow::Result<Source> {
-    let label = scene.path.display().to_string();
-    let (made, warnings, files) = match scene.path.to_str() {
-        Some("atrium") => (atrium::atrium(), Vec::new(), Vec::new()),
-        Some("banner") => (moving::banner(), Vec::new(), Vec::new()),
-        Some("flock") => (moving::flock(), Vec::new(), Vec::new()),
-        _ => {
-            let choice = |name: &String| {
-                name.parse().map_or_else(|_| SceneChoice::Name(name.clone()), SceneChoice::Index)
-            };
-            let options = LoadOptions { scene: scene.gltf_scene.as_ref().map(choice) };
-            let loaded = load_with(&scene.path, &options)?;
-            (loaded.scene, loaded.warnings, loaded.files)
-        }
-    };
-    Ok(Source { scene: made, label, warnings, files })
 }
 
 fn named(name: &str, number: usize) -> String {

@@ -10,7 +10,9 @@
 //! | watch | waits for changes of the scene's files |
 
 mod contract;
+mod device;
 mod difference;
+mod export;
 mod gallery;
 mod guard;
 mod inbox;
@@ -74,7 +76,13 @@ impl Engine {
             follow.clone(),
         ));
         let mut worker =
-            Worker::new(Arc::clone(&inbox), outbox.clone(), Arc::clone(&gallery), options.threads);
+            Worker::new(
+            Arc::clone(&inbox),
+            outbox.clone(),
+            Arc::clone(&gallery),
+            options.threads,
+            options.keeps_on_device,
+        );
         let (shows, loads, changes) = (Arc::clone(&gallery), Arc::clone(&loader), follow.clone());
         let threads = vec![
             spawn("ambray-worker", move || worker.run()),
@@ -94,7 +102,7 @@ impl Engine {
         self.inbox.show(order);
     }
 
-    /// Asks what the pixel at `(x, y)` of the picture of `side` did; the answer is an event.
+    /// Asks what the pixel at `(x, y)` of the picture of `side` did; the answer is [`Event::Inspected`].
     pub fn inspect(&self, side: Side, pixel: (u32, u32)) {
         self.inbox.put(|mail| mail.inspect = Some((side, pixel)));
     }

@@ -2,10 +2,13 @@
 
 use std::{sync::Arc, time::Instant};
 
-use ambray::{Control, RenderError, Renderer};
+use ambray::{Control, Drawn, Machine, RenderError, Renderer};
+use ambray_files::Interrupted;
 
 use super::{
-    contract::Event,
+    device::Easel,
+    contract::{Event, Export, Inspected},
+    export::Exporter,
     gallery::{Gallery, Shot},
     guard::caught,
     inbox::{Mail, SharedInbox},
@@ -14,6 +17,7 @@ use super::{
     plan::{Schedule, Step},
     throttle::Throttle,
 };
+use crate::model::Side;
 
 /// Renders what is wanted.
 #[derive(Debug)]
@@ -24,6 +28,11 @@ pub(super) struct Worker {
     pub(super) threads: usize,
     pub(super) open: Option<Open>,
     pub(super) schedule: Schedule,
+    /// Whether pictures stay on the device that renders them.
+    keeps_on_device: bool,
+    easel: Easel,
+    /// Whether both sides are wanted.
+    compares: bool,
 }
 
 /// The scene that is open.
@@ -35,8 +44,24 @@ pub(super) struct Open {
 }
 
 impl Worker {
-    pub(super) fn new(inbox: SharedInbox, outbox: Outbox, gallery: Arc<Gallery>, threads: usize) -> Self {
-        Self { inbox, outbox, gallery, threads, open: None, schedule: Schedule::default() }
+    pub(super) fn new(
+        inbox: SharedInbox,
+        outbox: Outbox,
+        gallery: Arc<Gallery>,
+        threads: usize,
+        keeps_on_device: bool,
+    ) -> Self {
+        Self {
+            inbox,
+            outbox,
+            gallery,
+            threads,
+            open: None,
+            schedule: Schedule::default(),
+            keeps_on_device,
+            easel: Easel::default(),
+            compares: false,
+        }
     }
 
     /// Works until all is over.
@@ -45,6 +70,9 @@ impl Worker {
         while let Some(mail) = self.inbox.take(step.is_none()) {
             self.read(mail);
             step = self.open.is_some().then(|| self.schedule.next()).flatten();
+            if step.is_none() && self.schedule.is_still() {
+                self.copy();
+            }
             if let Some(step) = &step
                 && self.inbox.begin(step)
             {
@@ -59,19 +87,128 @@ impl Worker {
         if let Some(ready) = mail.ready {
             self.reopen(*ready);
         }
+        if let Some((side, pixel)) = mail.inspect {
+            self.inspect(side, pixel);
+        }
+        for export in mail.exports {
+            self.export(&export);
+        }
         if let Some(order) = mail.order {
             self.schedule.take(&order);
-            self.gallery.look(&order);
+            self.compares = order.sides.iter().all(Option::is_some);
+            self.easel.look(&order);
+            self.gallery.look(&order, self.easel.side());
+            if let Err(message) = self.show() {
+                log::warn!("the picture on the device cannot be shown: {message}");
+                self.easel.clear();
+            }
         }
     }
 
     fn reopen(&mut self, ready: Ready) {
         let Ready { renderer, opened, label } = ready;
-        self.schedule.clear();
+        let on_device = self.keeps_on_device && matches!(opened.machine, Machine::Vulkan { .. });
+        self.schedule.clear(on_device);
+        self.easel.clear();
         self.gallery.reopen(opened);
         let old = self.open.replace(Open { renderer, label });
         // A large scene takes its time to be freed.
         rayon::spawn(move || drop(old));
+    }
+
+    /// Shows the picture on the device as it is wanted now.
+    fn show(&mut self) -> Result<(), String> {
+        let Some(open) = &mut self.open else { return Ok(()) };
+        let (easel, outbox) = (&mut self.easel, &self.outbox);
+        caught(|| easel.show(&mut open.renderer, outbox))?.map_err(|error| error.to_string())
+    }
+
+    /// Copies the picture on the device to the host.
+    fn copy(&mut self) {
+        let Some(open) = &mut self.open else { return };
+        let (easel, gallery) = (&mut self.easel, &self.gallery);
+        let copied = caught(|| easel.copy(&mut open.renderer, gallery));
+        if let Err(message) = copied.and_then(|done| done.map_err(|error| error.to_string())) {
+            log::warn!("the picture on the device cannot be copied: {message}");
+        }
+    }
+
+    /// Tells what `pixel` of the picture of `side` did.
+    fn inspect(&mut self, side: Side, pixel: (u32, u32)) {
+        if self.easel.is_uncopied(side) {
+            self.copy();
+        }
+        let (Some(open), Some(shot)) = (&mut self.open, self.gallery.shot(side)) else { return };
+        let control = Control { threads: self.threads, ..Control::default() };
+        let outcome = caught(|| open.renderer.inspect(&shot.settings, &shot.frame, pixel, control));
+        let message = match outcome {
+            Ok(Ok(inspection)) => {
+                let inspected = Inspected { side, pixel, inspection };
+                return self.outbox.send(Event::Inspected(Box::new(inspected)));
+            }
+            Ok(Err(error)) => error.to_string(),
+            Err(panic) => panic,
+        };
+        self.outbox.send(Event::InspectFailed { side, message });
+    }
+
+    /// Writes what `export` asks for.
+    fn export(&mut self, export: &Export) {
+        let (Export::Screenshot { path, .. } | Export::Turntable { path, .. }) = export;
+        let path = path.clone();
+        let Some(open) = &mut self.open else {
+            let message = "no scene is open".to_owned();
+            return self.outbox.send(Event::ExportFailed { path, message });
+        };
+        if !self.inbox.begin_export() {
+            return;
+        }
+        self.schedule.begin();
+        // Its frames take the place of the one on the device.
+        self.easel.clear();
+        self.outbox.send(Event::Exporting { share: 0.0 });
+        let (outbox, throttle) = (&self.outbox, Throttle::new());
+        let progress = |share| throttle.report(share, |share| outbox.send(Event::Exporting { share }));
+        let mut exporter = Exporter {
+            renderer: &mut open.renderer,
+            label: &open.label,
+            gallery: &self.gallery,
+            threads: self.threads,
+            cancel: self.inbox.export_cancel(),
+            progress: &progress,
+        };
+        let message = match caught(|| exporter.run(export)) {
+            Ok(Ok(())) => return self.outbox.send(Event::Exported { path }),
+            Ok(Err(error)) if error.is::<Interrupted>() => "cancelled".to_owned(),
+            Ok(Err(error)) => format!("{error:#}"),
+            Err(panic) => panic,
+        };
+        self.outbox.send(Event::ExportFailed { path, message });
+    }
+
+    /// Shows what was `drawn`.
+    fn hang(&mut self, step: &Step, drawn: Drawn) -> Result<(), String> {
+        match drawn {
+            Drawn::Host(frame) => {
+                self.easel.clear();
+                if step.is_shown {
+                    let Step { side, settings, level, frames, .. } = step.clone();
+                    self.gallery.hang(Shot { side, settings, level, frames, frame: Arc::from(frame) }, false);
+                }
+            }
+            Drawn::Device(frame) => {
+                self.gallery.take_down(step.side);
+                self.easel.take(step, *frame);
+                if step.is_shown {
+                    self.show()?;
+                }
+                // The other side will take its place.
+                if self.compares && step.level.is_final && self.schedule.is_still() {
+                    self.copy();
+                }
+            }
+        }
+        Ok(())
     }
 
     fn render(&mut self, step: &Step) {
@@ -90,18 +227,22 @@ impl Worker {
             if step.begins {
                 open.renderer.forget_frames();
             }
-            open.renderer.render(&step.settings, control)
+            if self.keeps_on_device {
+                open.renderer.draw(&step.settings, control)
+            } else {
+                open.renderer.render(&step.settings, control).map(|frame| Drawn::Host(Box::new(frame)))
+            }
         });
         let messages = match outcome {
-            Ok(Ok(frame)) => {
+            Ok(Ok(drawn)) => {
                 self.schedule.done(step, start.elapsed().as_secs_f64());
-                if step.is_shown {
-                    let (settings, level, frames) = (step.settings.clone(), step.level, step.frames);
-                    self.gallery.hang(Shot { side, settings, level, frames, frame: Arc::new(frame) });
+                match self.hang(step, drawn) {
+                    Ok(()) => return,
+                    Err(message) => vec![message],
                 }
-                return;
             }
-            Ok(Err(RenderError::Cancelled)) => return,
+            // What was on the device is half painted over.
+            Ok(Err(RenderError::Cancelled)) => return self.easel.clear(),
             Ok(Err(RenderError::Settings(errors))) => errors.iter().map(ToString::to_string).collect(),
             Ok(Err(error)) => vec![error.to_string()],
             Err(panic) => vec![panic],

@@ -126,8 +126,10 @@ pub(crate) fn render(scene: &str, settings: &Settings) -> Frame {
 
 #[track_caller]
 pub(crate) fn host(rendered: &Rendered) -> (&Frame, &Pixels) {
-    let Content::Host { frame, pixels } = &rendered.content;
-    (frame, pixels)
+    match &rendered.content {
+        Content::Host { frame, pixels } => (frame, pixels),
+        Content::Device { .. } => panic!("the processor has no device"),
+    }
 }
 
 /// Both frames have the same planes, bit for bit.

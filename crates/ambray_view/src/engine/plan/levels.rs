@@ -5,8 +5,6 @@ use ambray::settings::Size;
 use super::rate::{Rate, work};
 use crate::engine::contract::Level;
 
-/// A first picture should be there after so many seconds.
-const FIRST: f64 = 0.05;
 /// Levels before one that takes less than this, seconds, are left out: nobody would see them.
 const BRIEF: f64 = 0.1;
 /// The coarsest scale.
@@ -27,22 +25,22 @@ pub(super) fn cost(size: Size, level: &Level) -> f64 {
     work(scaled(size, level.scale), level.spp)
 }
 
-/// Levels from the first picture that is quick enough to the one that is asked for: the scale doubles up to 1, then the rays
+/// Levels from the first picture that takes at most `quick` seconds to the one that is asked for: the scale doubles up to 1, then the rays
 /// a pixel quadruple.
-pub(super) fn plan(size: Size, spp: u32, rate: Rate) -> Vec<Level> {
-    let fits = |level: &Level| rate.seconds(cost(size, level)).is_some_and(|seconds| seconds <= FIRST);
+pub(super) fn plan(size: Size, spp: u32, rate: Rate, quick: f64) -> Vec<Level> {
+    let fits = |level: &Level| rate.seconds(cost(size, level)).is_some_and(|seconds| seconds <= quick);
     let last = Level { scale: 1.0, spp, is_final: true };
     if fits(&last) {
         return vec![last];
     }
-    let quick = if spp <= FEW { spp } else { QUICK };
-    let mut levels = vec![first(quick, rate, fits)];
+    let few = if spp <= FEW { spp } else { QUICK };
+    let mut levels = vec![first(few, rate, fits)];
     let mut scale = levels[0].scale;
     while scale < 1.0 {
         scale *= 2.0;
-        levels.push(Level { scale, spp: quick, is_final: false });
+        levels.push(Level { scale, spp: few, is_final: false });
     }
-    let mut rays = quick;
+    let mut rays = few;
     while rays < spp {
         rays = rays.saturating_mul(4).min(spp);
         levels.push(Level { scale: 1.0, spp: rays, is_final: false });
@@ -85,7 +83,7 @@ mod tests {
 
     #[track_caller]
     fn check(spp: u32, rate: Rate, expected: &[(f32, u32)]) {
-        let levels = plan(SIZE, spp, rate);
+        let levels = plan(SIZE, spp, rate, 0.05);
         let actual: Vec<_> = levels.iter().map(|level| (level.scale, level.spp)).collect();
         assert_eq!(actual, expected);
         let last = levels.len() - 1;

@@ -13,6 +13,11 @@ use crate::{
     model::Side,
 };
 
+/// A first picture should be there after so many seconds.
+const QUICK: f64 = 0.05;
+/// The same on a device, where changing the size of pictures takes time itself.
+const QUICK_ON_DEVICE: f64 = 0.2;
+
 /// What the pictures are for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Mode {
@@ -59,6 +64,8 @@ pub(in crate::engine) struct Schedule {
     history: Option<(Side, u32)>,
     /// Frames since an animation plays.
     played: u32,
+    /// Whether a device renders.
+    on_device: bool,
 }
 
 impl Schedule {
@@ -90,21 +97,33 @@ impl Schedule {
             }
             match mode {
                 Mode::Playing => work.left.clear(),
-                _ => work.plan(self.rate, mode == Mode::Moving),
+                _ => work.plan(self.rate, self.quick(), mode == Mode::Moving),
             }
             self.sides[i] = Some(work);
         }
     }
 
     /// Forgets everything but what is wanted: another scene is open.
-    pub(in crate::engine) fn clear(&mut self) {
+    pub(in crate::engine) fn clear(&mut self, on_device: bool) {
         (self.rate, self.history, self.pace) = (Rate::default(), None, Pace::default());
+        self.on_device = on_device;
+        let quick = self.quick();
         for work in self.sides.iter_mut().flatten() {
             *work = Work::new(work.settings.clone());
             if self.mode != Mode::Playing {
-                work.plan(self.rate, self.mode == Mode::Moving);
+                work.plan(self.rate, quick, self.mode == Mode::Moving);
             }
         }
+    }
+
+    /// How long a first picture may take, seconds.
+    const fn quick(&self) -> f64 {
+        if self.on_device { QUICK_ON_DEVICE } else { QUICK }
+    }
+
+    /// Whether pictures are to be looked at, rather than to follow something.
+    pub(in crate::engine) fn is_still(&self) -> bool {
+        self.mode == Mode::Still
     }
 
     /// What is to be rendered next; `None` if everything is done.

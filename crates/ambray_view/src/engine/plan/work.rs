@@ -50,9 +50,9 @@ impl Work {
         self.settings.temporal == Temporal::On
     }
 
-    /// Plans what is left to be done; only a first picture if that `is_moving`.
-    pub(super) fn plan(&mut self, rate: Rate, is_moving: bool) {
-        let mut levels = levels::plan(self.settings.size, self.settings.spp, rate);
+    /// Plans what is left to be done, from a picture that takes at most `quick` seconds; only that if something `is_moving`.
+    pub(super) fn plan(&mut self, rate: Rate, quick: f64, is_moving: bool) {
+        let mut levels = levels::plan(self.settings.size, self.settings.spp, rate, quick);
         if is_moving {
             levels.truncate(1);
         }
