@@ -32,18 +32,15 @@ pub(super) fn sides([a, b]: &[Settings; 2]) -> [String; 2] {
 
 /// A setting with its value on both sides.
 struct Differing {
-    name: String,
+    name: &'static str,
     values: [String; 2],
 }
 
 fn differing(a: &Settings, b: &Settings) -> Vec<Differing> {
-    let values = |settings| toml::Table::try_from(settings).unwrap_or_default();
-    let (a, b) = (values(a), values(b));
-    let word = |value: &toml::Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
-    let both = a.iter().filter_map(|(name, value)| Some((name, value, b.get(name)?)));
-    both.filter(|(_, a, b)| a != b)
-        .map(|(name, a, b)| Differing { name: name.clone(), values: [word(a), word(b)] })
-        .collect()
+    let both = Settings::fields()
+        .iter()
+        .filter_map(|field| Some((field.name, a.get(field.name)?, b.get(field.name)?)));
+    both.filter(|(_, a, b)| a != b).map(|(name, a, b)| Differing { name, values: [a, b] }).collect()
 }
 
 /// How far a picture is refined, such as `refining 1/4, 8 spp`; `None` where there is nothing to say.
