@@ -9,7 +9,7 @@ use super::{
     labels::{self, MARGIN},
     placement::Placement,
     split,
-    textures::{HostTexture, PictureTextures, Scaling},
+    textures::{self, HostTexture, PictureTextures, Scaling},
 };
 use crate::{
     app::Shown,
@@ -67,8 +67,12 @@ impl Pictures {
                 texture.update(painter.ctx(), "picture", pixels, scaling);
                 texture.paint(painter, placement.picture);
             }
-            // The window that shares the device gives it a texture.
-            Content::Device { .. } => {}
+            Content::Device { .. } => {
+                let known = self.on_device.as_mut();
+                if let Some(texture) = known.and_then(|known| known.texture(rendered, scaling)) {
+                    textures::paint(painter, texture, placement.picture);
+                }
+            }
         }
     }
 }

@@ -97,6 +97,7 @@ fn rendered(side: Side, settings: &Settings, frame: &ambray::Frame) -> Rendered 
         content: Content::Host { frame: Arc::new(frame.clone()), pixels },
         statistics: None,
         stats: frame.stats,
+        frame_bytes: 0,
     }
 }
 

@@ -3,6 +3,7 @@
 use egui::{Context, Grid, RichText, Ui, Window};
 
 use super::keys::SHORTCUTS;
+use crate::canvas::ACTIONS;
 
 pub(super) fn show(ctx: &Context, is_open: &mut bool) {
     let window = Window::new("Keys and mouse").open(is_open).collapsible(false).resizable(false);
@@ -10,6 +11,7 @@ pub(super) fn show(ctx: &Context, is_open: &mut bool) {
         ui.horizontal_top(|ui| {
             let shortcuts = SHORTCUTS.iter().map(|shortcut| (shortcut.keys, shortcut.meaning));
             table(ui, "Window", shortcuts);
+            table(ui, "Picture", ACTIONS.iter().map(|action| (action.keys, action.meaning)));
         });
     });
 }

@@ -53,7 +53,11 @@ impl Desk {
                     return found;
                 }
             }
-            assert!(start.elapsed() < WATCHDOG, "{what} never came; last: {:?}", self.events.last().map(name));
+            assert!(
+                start.elapsed() < WATCHDOG,
+                "{what} never came; last: {:?}",
+                self.events.last().map(name)
+            );
             std::thread::sleep(Duration::from_millis(1));
         }
     }
