@@ -45,7 +45,7 @@ pub struct App {
     clock: Clock,
     /// The scene that the engine was last asked for.
     asked: Option<SceneRef>,
-    /// The scene that could not be opened, if that was the last one asked for.
+    /// The scene that could not be opened, while none is shown.
     failed: Option<SceneRef>,
     /// The last order.
     sent: Option<Order>,
@@ -122,13 +122,25 @@ impl App {
                     self.sent = None;
                     self.memory.opened(&opened.scene.path);
                 }
-                Event::OpenFailed { scene, .. } => self.failed = Some(scene.clone()),
+                Event::OpenFailed { scene, .. } if *scene == self.model.scene => self.scene_failed(),
                 Event::Picture(rendered) => has_arrived |= rendered.side == Side::A,
                 _ => {}
             }
             self.shown.take(event);
         }
         has_arrived
+    }
+
+    /// Goes back to the scene that is still shown, if there is one.
+    fn scene_failed(&mut self) {
+        match &self.shown.opened {
+            Some(opened) => {
+                self.model.scene = opened.scene.clone();
+                self.model.bookmarks = self.memory.bookmarks_of(&self.model.scene);
+                self.asked = Some(self.model.scene.clone());
+            }
+            None => self.failed = Some(self.model.scene.clone()),
+        }
     }
 
     fn ask_for_scene(&mut self) {

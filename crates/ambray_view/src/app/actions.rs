@@ -14,11 +14,8 @@ impl App {
     /// Does what is asked for.
     pub fn perform(&mut self, ctx: &egui::Context, action: Action) {
         match action {
-            Action::Open(scene) => {
-                self.model.scene = scene;
-                self.asked = None;
-            }
-            Action::Reload => self.asked = None,
+            Action::Open(scene) if scene != self.model.scene => self.model.scene = scene,
+            Action::Open(_) | Action::Reload => self.asked = None,
             Action::Ask(question) => self.ask(question),
             Action::LoadSettings(path) => self.errands.load(ctx, path),
             Action::SaveSettings(path) => {
@@ -45,7 +42,16 @@ impl App {
             Action::Keep(digit) => self.keep_bookmark(digit),
             Action::Recall(digit) => self.recall_bookmark(digit),
             Action::Copy(side) => self.copy(ctx, side),
-            Action::TogglePanels => self.toggle_panels(),
+            Action::TogglePanels => {
+                self.toggle_panels();
+                // The key has moved the focus, too, into a field that would take the next keys.
+                ctx.memory_mut(|memory| {
+                    memory.move_focus(egui::FocusDirection::None);
+                    if let Some(focused) = memory.focused() {
+                        memory.surrender_focus(focused);
+                    }
+                });
+            }
             Action::ToggleHelp => self.panels.toggle_help(),
             Action::TogglePlay => self.toggle_play(),
             Action::Step(frames) => clock::step(&mut self.model, self.shown.opened.as_deref(), frames),

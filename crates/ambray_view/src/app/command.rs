@@ -21,6 +21,6 @@ pub(super) fn line(model: &Model, shown: &Shown, side: Side) -> String {
         }
         more.push(format!("--frames={}..{}", settings.frame, settings.frame + frames));
     }
-    let scene = &model.scene;
+    let scene = shown.opened.as_ref().map_or(&model.scene, |opened| &opened.scene);
     ambray_files::command_line::render_command(&scene.path, scene.gltf_scene.as_deref(), settings, &more)
 }
