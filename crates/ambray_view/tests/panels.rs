@@ -223,6 +223,9 @@ fn the_help_opens_by_its_key_and_lists_the_keys() {
     assert!(desk.app().is_help_open());
     desk.harness.get_by_label("Keys and mouse");
     desk.harness.get_by_label("Open a scene");
+    for action in ambray_view::canvas::ACTIONS {
+        assert!(desk.harness.query_all_by_label(action.meaning).count() > 0, "{}", action.keys);
+    }
     desk.harness.key_press(Key::F1);
     desk.step(2);
     assert!(!desk.app().is_help_open());

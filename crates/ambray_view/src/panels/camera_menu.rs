@@ -1,13 +1,13 @@
 //! Where to look from: the cameras of the file, bookmarks, the projection.
 
-use ambray::{
-    camera::Projection,
-    settings::{Auto, Settings},
-};
+use ambray::{camera::Projection, settings::Auto};
 use egui::{Button, Ui};
 
 use super::{Desk, action::Action, became};
-use crate::model::Bookmark;
+use crate::{
+    camera::{Lens, Viewpoint},
+    model::Bookmark,
+};
 
 pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     let names: Vec<_> =
@@ -44,30 +44,13 @@ fn projection(ui: &mut Ui, desk: &mut Desk<'_>) {
         None => view.camera.depth(became::target(view, desk.shown.opened.as_deref())),
     };
     let settings = desk.model.edited_mut();
-    if ui.radio(!is_orthographic, "Perspective").clicked()
-        && let Projection::Orthographic { height } = view.camera.projection()
-    {
-        to_perspective(settings, height, depth);
+    let from = Viewpoint::current(settings, view, depth);
+    if ui.radio(!is_orthographic, "Perspective").clicked() && is_orthographic {
+        from.perspective(Lens::DEFAULT_FOV).apply(settings);
     }
-    if ui.radio(is_orthographic, "Orthographic").clicked()
-        && let Projection::Perspective { vertical_fov } = view.camera.projection()
-    {
-        to_orthographic(settings, vertical_fov, depth);
+    if ui.radio(is_orthographic, "Orthographic").clicked() && !is_orthographic {
+        from.orthographic().apply(settings);
     }
-}
-
-/// Keeps the size of what is at `depth`.
-fn to_perspective(settings: &mut Settings, height: f32, depth: f32) {
-    let fov = 2.0 * libm::atanf(0.5 * height / depth.max(f32::MIN_POSITIVE));
-    settings.orthographic_height = Auto::Auto;
-    settings.vertical_fov = Auto::Value(fov.to_degrees().clamp(1.0, 170.0));
-}
-
-/// Keeps the size of what is at `depth`.
-fn to_orthographic(settings: &mut Settings, vertical_fov: f32, depth: f32) {
-    let height = 2.0 * depth * libm::tanf(0.5 * vertical_fov);
-    settings.vertical_fov = Auto::Auto;
-    settings.orthographic_height = Auto::Value(height.clamp(1e-6, 1e9));
 }
 
 fn bookmarks(ui: &mut Ui, desk: &mut Desk<'_>) {
@@ -88,21 +71,5 @@ fn bookmarks(ui: &mut Ui, desk: &mut Desk<'_>) {
     let button = Button::new(format!("Keep as bookmark {digit}")).shortcut_text(format!("Shift+{digit}"));
     if ui.add(button).clicked() {
         desk.actions.push(Action::Keep(digit));
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_is_at_the_target_keeps_its_size_through_both_projections() {
-        let mut settings = Settings::default();
-        to_orthographic(&mut settings, 0.9, 4.0);
-        let height = *settings.orthographic_height.value().unwrap();
-        to_perspective(&mut settings, height, 4.0);
-        assert_eq!(settings.orthographic_height, Auto::Auto);
-        assert!((settings.vertical_fov.value().unwrap().to_radians() - 0.9).abs() < 1e-5);
-        assert_eq!(settings.validate(), []);
     }
 }

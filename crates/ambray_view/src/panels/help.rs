@@ -7,10 +7,11 @@ use crate::canvas::ACTIONS;
 
 pub(super) fn show(ctx: &Context, is_open: &mut bool) {
     let window = Window::new("Keys and mouse").open(is_open).collapsible(false).resizable(false);
-    window.default_pos([420.0, 80.0]).show(ctx, |ui| {
+    window.default_pos([260.0, 60.0]).show(ctx, |ui| {
         ui.horizontal_top(|ui| {
             let shortcuts = SHORTCUTS.iter().map(|shortcut| (shortcut.keys, shortcut.meaning));
             table(ui, "Window", shortcuts);
+            ui.separator();
             table(ui, "Picture", ACTIONS.iter().map(|action| (action.keys, action.meaning)));
         });
     });

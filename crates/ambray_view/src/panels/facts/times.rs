@@ -8,7 +8,6 @@ use egui_plot::{Bar, BarChart, Plot};
 
 use crate::{
     app::{TIMINGS, Timing},
-    model::Side,
     panels::{Desk, look},
 };
 
@@ -134,12 +133,7 @@ fn machine(ui: &mut Ui, desk: &Desk<'_>) {
     }
 }
 
-/// Bytes of the planes of the sides that are shown: about 210 a pixel, 370 where light is accumulated.
+/// Bytes of the pictures of the sides that are shown.
 fn planes(desk: &Desk<'_>) -> u64 {
-    let of = |side: &Side| {
-        let settings = desk.model.of(*side);
-        let pixels = u64::from(settings.size.width) * u64::from(settings.size.height);
-        pixels * if settings.temporal == ambray::settings::Temporal::On { 370 } else { 210 }
-    };
-    desk.model.sides().iter().map(of).sum()
+    desk.shown.sides.iter().flatten().map(|rendered| rendered.frame_bytes).sum()
 }
