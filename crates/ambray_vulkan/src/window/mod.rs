@@ -11,7 +11,6 @@ mod textures;
 
 use std::{ops::Range, sync::Arc};
 
-use ash::vk;
 use bytemuck::{Pod, Zeroable};
 
 use self::{
@@ -20,7 +19,7 @@ use self::{
     swapchain::{Acquired, Swapchain},
     textures::{Texture, Textures},
 };
-use crate::{Context, Result, VulkanError};
+use crate::{Context, Picture, Result, VulkanError};
 
 pub use self::textures::{Filter, Sampling, Upload};
 
@@ -106,10 +105,7 @@ impl Screen {
     /// Largest width and height of a texture.
     #[must_use]
     pub fn max_texture_side(&self) -> u32 {
-        // SAFETY: the handle is of this instance.
-        let properties =
-            unsafe { self.context.instance().get_physical_device_properties(self.context.physical_device()) };
-        properties.limits.max_image_dimension2_d
+        self.context.limits().image_side
     }
 
     /// The window has `size` pixels now; a side may be 0.
@@ -128,20 +124,12 @@ impl Screen {
         self.textures.upload(&self.context, &self.painter, number, upload)
     }
 
-    /// Makes `view`, an image of this device that can be sampled in the layout SHADER_READ_ONLY_OPTIMAL, texture `number`.
-    /// `keep` is held as long as a frame may use it, and must keep the image alive and unchanged.
+    /// Makes `picture`, of this device, texture `number`. It is held as long as a frame may use it.
     ///
     /// # Errors
     /// If there is no memory for the descriptor.
-    pub fn adopt(
-        &mut self,
-        number: u64,
-        view: vk::ImageView,
-        sampling: Sampling,
-        keep: Arc<dyn std::any::Any + Send + Sync>,
-    ) -> Result<()> {
-        let texture = Texture::adopted(&self.painter, view, sampling, keep)?;
-        self.textures.insert(number, texture);
+    pub fn adopt(&mut self, number: u64, picture: Arc<Picture>, sampling: Sampling) -> Result<()> {
+        self.textures.insert(number, Texture::of(&self.painter, picture, sampling)?);
         Ok(())
     }
 

@@ -5,11 +5,11 @@ use std::{any::Any, collections::HashMap, sync::Arc};
 use ash::vk;
 
 use super::{
-    image::{Image, whole},
+    image::whole,
     missing,
     painter::{Descriptor, Painter},
 };
-use crate::{Buffer, Context, Location, Recorder, Result};
+use crate::{Buffer, Context, Location, Picture, Recorder, Result};
 
 /// How a texture is looked up between its pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -49,25 +49,15 @@ pub(super) type Keep = Box<dyn Any + Send>;
 /// Something to sample.
 pub(super) struct Texture {
     descriptor: Descriptor,
-    content: Content,
-}
-
-/// The image behind a texture.
-enum Content {
-    Own(Image),
-    Adopted { _keep: Arc<dyn Any + Send + Sync> },
+    picture: Arc<Picture>,
+    /// Whether it is uploaded to; pictures of others are only looked at.
+    is_own: bool,
 }
 
 impl Texture {
-    /// A texture that samples `view`, which `keep` keeps.
-    pub(super) fn adopted(
-        painter: &Painter,
-        view: vk::ImageView,
-        sampling: Sampling,
-        keep: Arc<dyn Any + Send + Sync>,
-    ) -> Result<Self> {
-        let descriptor = painter.descriptor(view, sampling)?;
-        Ok(Self { descriptor, content: Content::Adopted { _keep: keep } })
+    /// A texture that shows `picture`.
+    pub(super) fn of(painter: &Painter, picture: Arc<Picture>, sampling: Sampling) -> Result<Self> {
+        Ok(Self { descriptor: painter.descriptor(picture.view(), sampling)?, picture, is_own: false })
     }
 
     pub(super) const fn set(&self) -> vk::DescriptorSet {
@@ -121,19 +111,18 @@ impl Textures {
         let Upload { at, size, rgba, sampling } = *upload;
         assert_eq!(rgba.len() as u64, u64::from(size[0]) * u64::from(size[1]) * 4, "four bytes a pixel");
         if at.is_none() {
-            let image = Image::new(context, size)?;
-            let descriptor = painter.descriptor(image.view(), sampling)?;
-            self.insert(number, Texture { descriptor, content: Content::Own(image) });
+            let picture = Arc::new(Picture::new(context, size.into())?);
+            self.insert(number, Texture { is_own: true, ..Texture::of(painter, picture, sampling)? });
         }
-        let Some(Texture { content: Content::Own(image), .. }) = self.by_number.get(&number) else {
+        let Some(Texture { picture, is_own: true, .. }) = self.by_number.get(&number) else {
             return Err(missing("the texture of which a part is replaced"));
         };
-        let corner = at.unwrap_or_default();
-        let fits = |i: usize| corner[i].checked_add(size[i]).is_some_and(|end| end <= image.size()[i]);
-        if !fits(0) || !fits(1) {
+        let (corner, (width, height)) = (at.unwrap_or_default(), picture.size());
+        let fits = |i: usize, side| corner[i].checked_add(size[i]).is_some_and(|end| end <= side);
+        if !fits(0, width) || !fits(1, height) {
             return Err(missing("room in the texture of which a part is replaced"));
         }
-        let image = image.handle();
+        let image = picture.image();
         let usage = vk::BufferUsageFlags::TRANSFER_SRC;
         let mut staging = context.buffer("texture's pixels", rgba.len() as u64, usage, Location::Upload)?;
         staging.write(0, rgba);
