@@ -62,7 +62,7 @@ frames (:STEP) are shown as much longer. The video appears when it is complete; 
 
 pub(super) const VIEW_NOTES: &str = "\
 In the window, ? lists what hands and keys do. 'Copy as command line' gives the call of ambray render that makes the picture \
-that is shown. The window needs a display; it draws with Vulkan where a graphics card renders, else with OpenGL.
+that is shown. Without options of settings it begins with the look of the last run. It needs a display; it draws with Vulkan where a graphics card renders, else with OpenGL.
 
 Steps of --script; places and sizes are pixels of the window:
   wait                       until the final pictures are shown

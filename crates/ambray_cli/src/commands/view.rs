@@ -9,11 +9,17 @@ pub fn run(args: &ViewArgs) -> anyhow::Result<()> {
         atomic::{Batch, Target},
         settings_file,
     };
-    use ambray_view::{ViewOptions, model::SceneRef};
+    use ambray::settings::SettingsPatch;
+    use ambray_view::{ViewOptions, memory, model::SceneRef};
 
-    use crate::{args::Grouping, settings};
+    use crate::{
+        args::{Grouping, SettingsArgs},
+        settings,
+    };
 
-    let settings = settings::resolve(&args.settings)?;
+    let SettingsArgs { preset, settings: file, flags, .. } = &args.settings;
+    let is_look_given = preset.is_some() || file.is_some() || *flags != SettingsPatch::default();
+    let settings = is_look_given.then(|| settings::resolve(&args.settings)).transpose()?;
     let saved = args.settings.save_settings.as_deref().map(Target::of);
     if let Some(saved) = &saved {
         saved.check()?;
@@ -24,7 +30,7 @@ pub fn run(args: &ViewArgs) -> anyhow::Result<()> {
         settings,
         renderer: args.backend.options(Grouping::Auto)?,
         threads: usize::from(args.threads),
-        memory: args.memory.clone(),
+        memory: if args.no_memory { None } else { args.memory.clone().or_else(memory::default_path) },
         script: args.script.clone(),
     })?;
     let Some(saved) = &saved else { return Ok(()) };

@@ -7,8 +7,10 @@
 mod gl;
 mod icon;
 mod input;
+mod pictures;
 mod present;
 pub mod script;
+mod vulkan;
 mod window;
 
 use std::path::PathBuf;
@@ -25,13 +27,14 @@ use crate::model::SceneRef;
 pub struct ViewOptions {
     /// The scene.
     pub scene: SceneRef,
-    /// The look to begin with.
-    pub settings: Settings,
+    /// The look to begin with; `None` for that of the last run.
+    pub settings: Option<Settings>,
     /// Who renders.
     pub renderer: RendererOptions,
     /// Threads of the processor, 0 for all cores.
     pub threads: usize,
-    /// Where settings and window are remembered; `None` to forget them.
+    /// Where looks, window and recent files are remembered ([`default_path`](crate::memory::default_path)); `None` to forget
+    /// them.
     pub memory: Option<PathBuf>,
     /// A walk through the window, for tests and for pictures of documentation: a file of steps, as [`script`] has them.
     pub script: Option<PathBuf>,

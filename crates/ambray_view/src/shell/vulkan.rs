@@ -90,7 +90,7 @@ impl Vulkan {
             if !screen.has(texture) {
                 let filter = if entry.scaling == Scaling::Exact { Filter::Nearest } else { Filter::Linear };
                 let sampling = Sampling { magnified: filter, minified: filter };
-                screen.adopt(texture, entry.picture.view(), sampling, entry.picture)?;
+                screen.adopt(texture, entry.picture, sampling)?;
             }
         }
         Ok(())

@@ -19,21 +19,21 @@ use winit::{
 
 use super::{
     ViewOptions, Wake,
-    gl::Gl,
     icon::icon,
-    present::{Painting, Presenter},
+    present::{self, Opened, Painting, Presenter},
     script::{Runner, Script, Wish},
 };
 use crate::{
-    app::App,
+    app::{App, Severity},
     engine::{Engine, EngineOptions, Wake as EngineWake},
+    memory::{Memory, Store, WindowState},
     model::Model,
 };
 
 /// Size of the window where none is remembered, points.
-const SIZE: LogicalSize<f64> = LogicalSize::new(1440.0, 900.0);
+const SIZE: (f32, f32) = (1440.0, 900.0);
 /// Smallest size that has room for the panels, points.
-const LEAST: LogicalSize<f64> = LogicalSize::new(480.0, 320.0);
+const LEAST: (f32, f32) = (480.0, 320.0);
 /// How often a script that waits looks whether it has waited for too long.
 const PATROL: Duration = Duration::from_millis(200);
 
@@ -57,7 +57,7 @@ struct Open {
     draw_at: Option<Instant>,
     title: String,
     is_visible: bool,
-    window: Window,
+    window: Arc<Window>,
 }
 
 impl Shell {
@@ -67,25 +67,33 @@ impl Shell {
 
     /// What is left of the window: the settings that were edited last, or what went wrong.
     pub(super) fn finish(self) -> anyhow::Result<Settings> {
-        let settings = match &self.open {
-            Some(open) => open.app.model.of(open.app.model.editing).clone(),
-            None => self.options.settings,
-        };
+        let mut settings = self.options.settings.unwrap_or_default();
+        if let Some(mut open) = self.open {
+            if let Some(warning) = open.app.finish() {
+                log::warn!("{warning}");
+            }
+            settings = open.app.model.of(open.app.model.editing).clone();
+        }
         self.failure.map_or(Ok(settings), Err)
     }
 
     fn open(&mut self, event_loop: &ActiveEventLoop) -> anyhow::Result<Open> {
         let options = &self.options;
+        let (store, memory, warning) = match &options.memory {
+            Some(path) => Store::open(path.clone()),
+            None => (Store::none(), Memory::default(), None),
+        };
         let title = title(&options.scene.path.display().to_string());
+        let remembered = memory.window.unwrap_or(WindowState { width: SIZE.0, height: SIZE.1, is_maximized: false });
         let attributes = WindowAttributes::default()
             .with_title(&title)
-            .with_inner_size(SIZE)
-            .with_min_inner_size(LEAST)
+            .with_inner_size(LogicalSize::new(remembered.width.max(LEAST.0), remembered.height.max(LEAST.1)))
+            .with_min_inner_size(LogicalSize::new(LEAST.0, LEAST.1))
+            .with_maximized(remembered.is_maximized)
             .with_window_icon(icon())
             // Shown when there is something to see.
             .with_visible(false);
-        let (window, presenter) = Gl::open(event_loop, attributes)?;
-        let presenter: Box<dyn Presenter> = Box::new(presenter);
+        let Opened { window, presenter, renderer, pictures } = present::open(event_loop, &attributes, &options.renderer)?;
 
         let context = egui::Context::default();
         let proxy = self.proxy.clone();
@@ -106,17 +114,36 @@ impl Shell {
         );
         let proxy = self.proxy.clone();
         let engine = Engine::new(EngineOptions {
-            renderer: options.renderer.clone(),
+            renderer,
             threads: options.threads,
-            keeps_on_device: false,
+            keeps_on_device: pictures.is_some(),
             wake: EngineWake(Arc::new(move || {
                 let _ = proxy.send_event(Wake::Engine);
             })),
         });
-        let app = App::new(Model::new(options.scene.clone(), options.settings.clone()), engine);
-        let script = self.script.take().map(Runner::new);
-        let info = ViewportInfo::default();
-        Ok(Open { app, presenter, system, info, script, draw_at: Some(Instant::now()), title, is_visible: false, window })
+        let settings = options.settings.clone().unwrap_or_else(|| {
+            let mut settings = Settings::default();
+            memory.settings.apply(&mut settings);
+            settings
+        });
+        let mut app = App::remembering(Model::new(options.scene.clone(), settings), engine, memory, store);
+        if let Some(warning) = warning {
+            app.shown.notify(Severity::Warning, warning);
+        }
+        if let Some(pictures) = pictures {
+            app.canvas_mut().set_textures(pictures);
+        }
+        Ok(Open {
+            app,
+            presenter,
+            system,
+            info: ViewportInfo::default(),
+            script: self.script.take().map(Runner::new),
+            draw_at: Some(Instant::now()),
+            title,
+            is_visible: false,
+            window,
+        })
     }
 
     /// Does `work` with the window; closes it if that fails.
@@ -174,7 +201,8 @@ impl Open {
             self.window.set_visible(true);
         }
         self.retitle();
-        if self.info.events.contains(&ViewportEvent::Close) {
+        self.remember_size();
+        if self.info.events.contains(&ViewportEvent::Close) || self.app.is_quitting() {
             event_loop.exit();
         }
         if let Some(script) = &mut self.script {
@@ -216,6 +244,18 @@ impl Open {
             self.draw_by(Instant::now());
         }
         Ok(())
+    }
+
+    /// Tells the memory how large the window is; while it fills the screen, how large it was before.
+    fn remember_size(&mut self) {
+        if self.window.fullscreen().is_some() || self.script.is_some() {
+            return;
+        }
+        let is_maximized = self.window.is_maximized();
+        let size = self.window.inner_size().to_logical::<f32>(self.window.scale_factor());
+        let now = WindowState { width: size.width, height: size.height, is_maximized };
+        let before = self.app.memory.window.unwrap_or(now);
+        self.app.memory.window = Some(if is_maximized { WindowState { is_maximized, ..before } } else { now });
     }
 
     /// Names the scene in the window's title.

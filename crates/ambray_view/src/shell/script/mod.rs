@@ -23,7 +23,6 @@
 //! | `expect error TEXT`, `expect no-error` | fails unless there is a message of an error that holds the text, or none at all |
 //! | `quit` | closes the window; what comes at the end of the script, too |
 
-mod app;
 mod parse;
 mod run;
 

@@ -11,10 +11,7 @@ use anyhow::{Context as _, bail};
 use egui::{Event, Pos2, RawInput, Vec2};
 use winit::{dpi::PhysicalSize, event::WindowEvent, window::Window};
 
-use super::{
-    Script, Step,
-    app::{is_idle, set},
-};
+use super::{Script, Step};
 use crate::{
     app::{App, Severity},
     engine::Pixels,
@@ -119,7 +116,7 @@ impl Runner {
             None if self.script.steps.is_empty() => return Ok(Wish::Close),
             None | Some(Doing::Events(_)) => Wish::NextFrame,
             Some(Doing::Waiting { idle }) => {
-                *idle = if is_idle(app) { *idle + 1 } else { 0 };
+                *idle = if app.is_idle() { *idle + 1 } else { 0 };
                 let (is_idle, is_done) = (*idle > 0, *idle >= IDLE_FRAMES);
                 if is_done {
                     self.doing = None;
@@ -156,11 +153,10 @@ impl Runner {
     ) -> anyhow::Result<Option<Doing>> {
         let scale = egui_winit::pixels_per_point(system.egui_ctx(), window);
         let pos = |(x, y): (f32, f32)| Pos2::new(x / scale, y / scale);
-        let model = &mut app.model;
         let frames = match step {
             Step::Wait => return Ok(Some(Doing::Waiting { idle: 0 })),
             Step::Open(path) => {
-                model.scene = SceneRef::new(path);
+                app.model.scene = SceneRef::new(path);
                 return Ok(None);
             }
             Step::Drop(path) => {
@@ -168,23 +164,23 @@ impl Runner {
                 return Ok(None);
             }
             Step::Set { name, value } => {
-                set(model.of_mut(model.editing), &name, &value)?;
+                app.set(&name, &value)?;
                 return Ok(None);
             }
             Step::Edit(side) => {
-                model.editing = side;
+                app.model.editing = side;
                 return Ok(None);
             }
             Step::Compare(comparison) => {
-                model.comparison = comparison;
+                app.model.comparison = comparison;
                 return Ok(None);
             }
             Step::Divider(share) => {
-                model.divider = share;
+                app.model.divider = share;
                 return Ok(None);
             }
             Step::Show(aov) => {
-                model.aov = aov;
+                app.model.aov = aov;
                 return Ok(None);
             }
             Step::Resize(width, height) => {
@@ -194,7 +190,9 @@ impl Runner {
             }
             Step::Screenshot(path) => return Ok(Some(Doing::Shooting(path))),
             Step::Copy(path) => {
-                bail!("{}: not yet", path.display());
+                let line = app.command_line(app.model.editing);
+                fs::write(&path, line + "\n").with_context(|| path.display().to_string())?;
+                return Ok(None);
             }
             Step::ExpectError(text) => return expect_error(app, Some(&text)).map(|()| None),
             Step::ExpectNoError => return expect_error(app, None).map(|()| None),
