@@ -21,6 +21,9 @@ if [ "${AMBRAY_VULKAN:-lavapipe}" != hardware ] && [ -z "${VK_DRIVER_FILES:-}" ]
   if [ -n "$lavapipe" ]; then export VK_DRIVER_FILES=$lavapipe; fi
 fi
 
+# The window's tests open it on a screen in memory.
+scripts/view.sh
+
 step "formatting"
 if cargo fmt --version >/dev/null 2>&1; then cargo fmt --all --check; else echo "skipped: no rustfmt"; fi
 

@@ -1,0 +1,162 @@
+//! The window, with a keyboard and a mouse.
+
+use std::{
+    process::Stdio,
+    thread,
+    time::{Duration, Instant},
+};
+
+use x11rb::{
+    connection::Connection as _,
+    protocol::{
+        xproto::{
+            BUTTON_PRESS_EVENT, BUTTON_RELEASE_EVENT, ClientMessageEvent, ConnectionExt as _, EventMask, ImageFormat,
+            KEY_PRESS_EVENT, KEY_RELEASE_EVENT, MOTION_NOTIFY_EVENT, Window,
+        },
+        xtest::ConnectionExt as _,
+    },
+    rust_connection::RustConnection,
+};
+
+use crate::display::{Display, Place, assert_quiet, finish};
+
+/// How long the window may take for an answer: far more than it does.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// The window as the X server has it.
+struct Touched {
+    server: RustConnection,
+    root: Window,
+    window: Window,
+}
+
+impl Touched {
+    /// Waits for the window whose title ends in Ambray.
+    fn find(display: &Display) -> Self {
+        let (server, screen) = x11rb::connect(Some(&display.name)).expect("the server");
+        let root = server.setup().roots[screen].root;
+        let title = server.intern_atom(false, b"_NET_WM_NAME").expect("sent").reply().expect("atom").atom;
+        let utf8 = server.intern_atom(false, b"UTF8_STRING").expect("sent").reply().expect("atom").atom;
+        let is_it = |window| {
+            let property = server.get_property(false, window, title, utf8, 0, 64).expect("sent").reply();
+            property.is_ok_and(|property| property.value.ends_with("Ambray".as_bytes()))
+        };
+        let window = wait_for("a window", || {
+            let children = server.query_tree(root).expect("sent").reply().expect("windows").children;
+            children.into_iter().find(|&window| is_it(window))
+        });
+        Self { server, root, window }
+    }
+
+    /// What is on the screen.
+    fn pixels(&self) -> Vec<u8> {
+        let size = self.server.get_geometry(self.window).expect("sent").reply().expect("size");
+        let image = self.server.get_image(ImageFormat::Z_PIXMAP, self.window, 0, 0, size.width, size.height, u32::MAX);
+        image.expect("sent").reply().map(|image| image.data).unwrap_or_default()
+    }
+
+    /// Waits until the window shows the same for a second, and something other than `before`.
+    fn settled(&self, before: &[u8]) -> Vec<u8> {
+        let mut last = self.pixels();
+        let mut same = 0;
+        wait_for("another picture", || {
+            thread::sleep(Duration::from_millis(100));
+            let now = self.pixels();
+            same = if now == last { same + 1 } else { 0 };
+            last = now;
+            (same >= 10 && changed(&last, before) > 0.005).then(|| last.clone())
+        })
+    }
+
+    fn fake(&self, kind: u8, detail: u8, x: i16, y: i16) {
+        self.server.xtest_fake_input(kind, detail, 0, self.root, x, y, 0).expect("sent").check().expect("XTEST");
+        self.server.flush().expect("sent");
+        thread::sleep(Duration::from_millis(40));
+    }
+
+    /// Presses the key with the symbol `symbol`, with Shift if that is where it is.
+    fn press(&self, symbol: u32) {
+        let setup = self.server.setup();
+        let (first, count) = (setup.min_keycode, setup.max_keycode - setup.min_keycode + 1);
+        let mapping = self.server.get_keyboard_mapping(first, count).expect("sent").reply().expect("keys");
+        let each = usize::from(mapping.keysyms_per_keycode);
+        let key_of = |symbol: u32, level: usize| {
+            let found = mapping.keysyms.chunks(each).position(|symbols| symbols.get(level) == Some(&symbol));
+            found.map(|i| first + i as u8)
+        };
+        let shift = key_of(0xffe1, 0).expect("a Shift key");
+        let (key, is_shifted) = match key_of(symbol, 0) {
+            Some(key) => (key, false),
+            None => (key_of(symbol, 1).expect("the key"), true),
+        };
+        if is_shifted {
+            self.fake(KEY_PRESS_EVENT, shift, 0, 0);
+        }
+        self.fake(KEY_PRESS_EVENT, key, 0, 0);
+        self.fake(KEY_RELEASE_EVENT, key, 0, 0);
+        if is_shifted {
+            self.fake(KEY_RELEASE_EVENT, shift, 0, 0);
+        }
+    }
+
+    fn drag(&self, (x, y): (i16, i16), (dx, dy): (i16, i16)) {
+        self.fake(MOTION_NOTIFY_EVENT, 0, x, y);
+        self.fake(BUTTON_PRESS_EVENT, 1, 0, 0);
+        for i in 1..=8 {
+            self.fake(MOTION_NOTIFY_EVENT, 0, x + dx * i / 8, y + dy * i / 8);
+        }
+        self.fake(BUTTON_RELEASE_EVENT, 1, 0, 0);
+    }
+
+    /// Asks the window to close, as a click on its cross does.
+    fn close(&self) {
+        let atom = |name: &[u8]| self.server.intern_atom(false, name).expect("sent").reply().expect("atom").atom;
+        let data = [atom(b"WM_DELETE_WINDOW"), x11rb::CURRENT_TIME, 0, 0, 0];
+        let message = ClientMessageEvent::new(32, self.window, atom(b"WM_PROTOCOLS"), data);
+        self.server.send_event(false, self.window, EventMask::NO_EVENT, message).expect("sent");
+        self.server.flush().expect("sent");
+    }
+}
+
+/// Share of the bytes that differ.
+fn changed(a: &[u8], b: &[u8]) -> f64 {
+    if a.len() != b.len() {
+        return 1.0;
+    }
+    a.iter().zip(b).filter(|(a, b)| a != b).count() as f64 / a.len() as f64
+}
+
+#[track_caller]
+fn wait_for<T>(what: &str, mut look: impl FnMut() -> Option<T>) -> T {
+    let start = Instant::now();
+    loop {
+        if let Some(found) = look() {
+            return found;
+        }
+        assert!(start.elapsed() < PATIENCE, "{what} does not come");
+        thread::sleep(Duration::from_millis(50));
+    }
+}
+
+#[test]
+fn keys_the_mouse_and_the_cross_of_the_window_work() {
+    let Some(display) = Display::start() else { return };
+    let place = Place::new();
+    let mut command = place.view(&display, &["--backend", "cpu", "--spp=1", "--memory", "memory/view.toml"]);
+    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts");
+    let window = Touched::find(&display);
+    let first = window.settled(&[]);
+    // The picture is in the middle. Keys go where the pointer is: there is no window manager.
+    window.fake(MOTION_NOTIFY_EVENT, 0, 720, 450);
+    window.press(u32::from(b'?'));
+    let help = window.settled(&first);
+    window.press(u32::from(b'?'));
+    let closed = window.settled(&help);
+    window.drag((720, 450), (160, 40));
+    let turned = window.settled(&closed);
+    assert!(changed(&turned, &closed) > 0.1, "a drag turns the camera");
+    window.close();
+    assert_quiet(&finish(child));
+    let memory = std::fs::read_to_string(place.path("memory/view.toml")).expect("what was remembered");
+    assert!(memory.contains("width = 1440"), "{memory}");
+}
