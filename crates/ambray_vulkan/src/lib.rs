@@ -37,8 +37,8 @@ pub use acceleration::{
 pub use backend::{VulkanBackend, VulkanOptions};
 pub use commands::{CommandSet, Recorder, Timing, Work};
 pub use context::{
-    Capability, Context, DeviceKind, DeviceOptions, DeviceReport, Limits, Live, NativeWindow, Need, VALIDATION_LOG,
-    ValidationLog, choose, probe,
+    Capability, Context, DeviceKind, DeviceOptions, DeviceReport, Limits, Live, NativeWindow, Need,
+    VALIDATION_LOG, ValidationLog, choose, probe,
 };
 pub use device::Device;
 pub use error::{MemorySide, Result, VulkanError};

@@ -5,11 +5,11 @@ use crate::args::ViewArgs;
 /// Opens the window.
 #[cfg(feature = "view")]
 pub fn run(args: &ViewArgs) -> anyhow::Result<()> {
+    use ambray::settings::SettingsPatch;
     use ambray_files::{
         atomic::{Batch, Target},
         settings_file,
     };
-    use ambray::settings::SettingsPatch;
     use ambray_view::{ViewOptions, memory, model::SceneRef};
 
     use crate::{

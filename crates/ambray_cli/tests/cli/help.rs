@@ -7,9 +7,16 @@ use ambray_cli::args::{command, parse_from};
 fn help_names_commands_examples_and_exit_codes() {
     let bench = Bench::new();
     let help = bench.run(&["--help"]).succeeds().text();
-    for part in
-        ["render", "view", "query", "bench", "info", "completions", "ambray render scene.glb", "130 interrupted"]
-    {
+    for part in [
+        "render",
+        "view",
+        "query",
+        "bench",
+        "info",
+        "completions",
+        "ambray render scene.glb",
+        "130 interrupted",
+    ] {
         assert!(help.contains(part), "{part} is missing in\n{help}");
     }
     let short = bench.run(&["-h"]).succeeds().text();

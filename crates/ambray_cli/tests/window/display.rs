@@ -66,7 +66,10 @@ impl Place {
     pub(crate) fn program(&self) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_ambray"));
         command.current_dir(self.folder.path()).stdin(Stdio::null());
-        command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env("XDG_CONFIG_HOME", self.path("config"));
+        command
+            .env_remove("DISPLAY")
+            .env_remove("WAYLAND_DISPLAY")
+            .env("XDG_CONFIG_HOME", self.path("config"));
         // The system's scale must not change sizes.
         command.env("WINIT_X11_SCALE_FACTOR", "1");
         command
@@ -127,7 +130,8 @@ pub(crate) fn assert_quiet(output: &Output) {
 pub(crate) fn lavapipe() -> Option<PathBuf> {
     let folder = fs::read_dir("/usr/share/vulkan/icd.d").ok()?;
     let mut drivers = folder.filter_map(|entry| Some(entry.ok()?.path()));
-    let driver = drivers.find(|path| Path::file_name(path).is_some_and(|n| n.to_string_lossy().starts_with("lvp_icd")));
+    let driver = drivers
+        .find(|path| Path::file_name(path).is_some_and(|n| n.to_string_lossy().starts_with("lvp_icd")));
     if driver.is_none() {
         let is_required = std::env::var_os("AMBRAY_REQUIRE_VULKAN").is_some_and(|value| value == "1");
         assert!(!is_required, "lavapipe is not installed, and AMBRAY_REQUIRE_VULKAN=1");

@@ -13,7 +13,8 @@ pub(crate) struct Picture {
 impl Picture {
     #[track_caller]
     pub(crate) fn read(path: &Path) -> Self {
-        let file = BufReader::new(File::open(path).unwrap_or_else(|error| panic!("{}: {error}", path.display())));
+        let file =
+            BufReader::new(File::open(path).unwrap_or_else(|error| panic!("{}: {error}", path.display())));
         let mut reader = png::Decoder::new(file).read_info().expect("a PNG file");
         let mut bytes = vec![0; reader.output_buffer_size().expect("a size")];
         let info = reader.next_frame(&mut bytes).expect("pixels");
@@ -30,7 +31,9 @@ impl Picture {
     pub(crate) fn find(&self, part: &Self, tolerance: u8) -> Option<(usize, usize)> {
         // The middle is free of labels. A window shows one picture, so the first fit is it.
         let probe: Vec<(usize, usize)> = (0..64)
-            .map(|i| (part.width / 4 + (i * 37) % (part.width / 2), part.height / 4 + (i * 53) % (part.height / 2)))
+            .map(|i| {
+                (part.width / 4 + (i * 37) % (part.width / 2), part.height / 4 + (i * 53) % (part.height / 2))
+            })
             .collect();
         let fits = |x: usize, y: usize| {
             probe.iter().all(|&(px, py)| is_close(self.at(x + px, y + py), part.at(px, py), tolerance))
@@ -52,11 +55,17 @@ pub(crate) fn is_close(a: [u8; 3], b: [u8; 3], tolerance: u8) -> bool {
 
 /// Share of the pixels of `part` at `(x, y)` of `whole` that differ by more than `tolerance`: of all, and of the middle, where
 /// nothing is drawn over the picture.
-pub(crate) fn differing(whole: &Picture, part: &Picture, (x, y): (usize, usize), tolerance: u8) -> (f64, f64) {
+pub(crate) fn differing(
+    whole: &Picture,
+    part: &Picture,
+    (x, y): (usize, usize),
+    tolerance: u8,
+) -> (f64, f64) {
     let is_off = |px: usize, py: usize| !is_close(whole.at(x + px, y + py), part.at(px, py), tolerance);
     let share = |columns: std::ops::Range<usize>, rows: std::ops::Range<usize>| {
         let count = (columns.len() * rows.len()) as f64;
-        rows.flat_map(|py| columns.clone().map(move |px| (px, py))).filter(|&(px, py)| is_off(px, py)).count() as f64
+        rows.flat_map(|py| columns.clone().map(move |px| (px, py))).filter(|&(px, py)| is_off(px, py)).count()
+            as f64
             / count
     };
     let (w, h) = (part.width, part.height);

@@ -18,7 +18,8 @@ fn the_window_shows_what_the_copied_command_line_renders() {
     let arguments = [&["--backend", "cpu"], &QUICK[..]].concat();
     assert_quiet(&place.walk(&display, &arguments, walk));
     place.run_line("line.txt", &["--backend", "cpu", "--quiet", "-o", "picture.png"]);
-    let (window, picture) = (Picture::read(&place.path("window.png")), Picture::read(&place.path("picture.png")));
+    let (window, picture) =
+        (Picture::read(&place.path("window.png")), Picture::read(&place.path("picture.png")));
     assert_eq!((window.width, window.height), (1000, 640));
     assert!(picture.colours() > 1000, "{} colours", picture.colours());
     let found = window.find(&picture, 0).expect("the picture is in the window, byte for byte");
@@ -35,13 +36,15 @@ fn a_vulkan_device_presents_what_it_renders_and_the_validation_layer_is_silent()
                 resize 700 500\nset spp 1\nside b\ncompare split\nset spp 3\ndivider 0.25\nwait\nscreenshot split.png\n\
                 drop nothing.glb\nwait\nexpect error nothing.glb\nexpect error no such\nresize 900 560\nwait\n";
     fs::write(place.path("walk.txt"), walk).expect("script");
-    let mut command = place.view(&display, &["--no-memory", "--script", "walk.txt", "--backend", "vulkan", "--validation"]);
+    let mut command =
+        place.view(&display, &["--no-memory", "--script", "walk.txt", "--backend", "vulkan", "--validation"]);
     command.args(QUICK).env("VK_DRIVER_FILES", &driver).env("VK_ICD_FILENAMES", &driver);
     let child = command.stdout(std::process::Stdio::piped()).stderr(std::process::Stdio::piped()).spawn();
     assert_quiet(&crate::display::finish(child.expect("the program starts")));
     // The processor renders the same up to rounding.
     place.run_line("line.txt", &["--backend", "cpu", "--quiet", "-o", "picture.png"]);
-    let (window, picture) = (Picture::read(&place.path("window.png")), Picture::read(&place.path("picture.png")));
+    let (window, picture) =
+        (Picture::read(&place.path("window.png")), Picture::read(&place.path("picture.png")));
     let found = window.find(&picture, 2).expect("the picture is in the window");
     let (_, middle) = differing(&window, &picture, found, 2);
     assert!(middle < 0.005, "{middle} of the pixels differ");

@@ -10,8 +10,8 @@ use x11rb::{
     connection::Connection as _,
     protocol::{
         xproto::{
-            BUTTON_PRESS_EVENT, BUTTON_RELEASE_EVENT, ClientMessageEvent, ConnectionExt as _, EventMask, ImageFormat,
-            KEY_PRESS_EVENT, KEY_RELEASE_EVENT, MOTION_NOTIFY_EVENT, Window,
+            BUTTON_PRESS_EVENT, BUTTON_RELEASE_EVENT, ClientMessageEvent, ConnectionExt as _, EventMask,
+            ImageFormat, KEY_PRESS_EVENT, KEY_RELEASE_EVENT, MOTION_NOTIFY_EVENT, Window,
         },
         xtest::ConnectionExt as _,
     },
@@ -51,7 +51,15 @@ impl Touched {
     /// What is on the screen.
     fn pixels(&self) -> Vec<u8> {
         let size = self.server.get_geometry(self.window).expect("sent").reply().expect("size");
-        let image = self.server.get_image(ImageFormat::Z_PIXMAP, self.window, 0, 0, size.width, size.height, u32::MAX);
+        let image = self.server.get_image(
+            ImageFormat::Z_PIXMAP,
+            self.window,
+            0,
+            0,
+            size.width,
+            size.height,
+            u32::MAX,
+        );
         image.expect("sent").reply().map(|image| image.data).unwrap_or_default()
     }
 
@@ -69,7 +77,11 @@ impl Touched {
     }
 
     fn fake(&self, kind: u8, detail: u8, x: i16, y: i16) {
-        self.server.xtest_fake_input(kind, detail, 0, self.root, x, y, 0).expect("sent").check().expect("XTEST");
+        self.server
+            .xtest_fake_input(kind, detail, 0, self.root, x, y, 0)
+            .expect("sent")
+            .check()
+            .expect("XTEST");
         self.server.flush().expect("sent");
         thread::sleep(Duration::from_millis(40));
     }
@@ -110,7 +122,8 @@ impl Touched {
 
     /// Asks the window to close, as a click on its cross does.
     fn close(&self) {
-        let atom = |name: &[u8]| self.server.intern_atom(false, name).expect("sent").reply().expect("atom").atom;
+        let atom =
+            |name: &[u8]| self.server.intern_atom(false, name).expect("sent").reply().expect("atom").atom;
         let data = [atom(b"WM_DELETE_WINDOW"), x11rb::CURRENT_TIME, 0, 0, 0];
         let message = ClientMessageEvent::new(32, self.window, atom(b"WM_PROTOCOLS"), data);
         self.server.send_event(false, self.window, EventMask::NO_EVENT, message).expect("sent");

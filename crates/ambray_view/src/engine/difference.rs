@@ -74,7 +74,12 @@ fn picture(values: &[f32], channels: usize, largest: f32) -> Vec<u8> {
     let pixel = |d: &[f32]| match *d {
         [d] => {
             let (t, rest) = (part(d), 0.5 - 0.5 * part(d).abs());
-            [byte(if t > 0.0 { 0.5 + 0.5 * t } else { rest }), byte(rest), byte(if t < 0.0 { 0.5 - 0.5 * t } else { rest }), u8::MAX]
+            [
+                byte(if t > 0.0 { 0.5 + 0.5 * t } else { rest }),
+                byte(rest),
+                byte(if t < 0.0 { 0.5 - 0.5 * t } else { rest }),
+                u8::MAX,
+            ]
         }
         _ => {
             let channel = |c: usize| d.get(c).map_or(0, |d| byte(part(*d).abs()));

@@ -13,7 +13,8 @@ pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 
 /// Runs `work`; a panic in it comes back as one line.
 pub(super) fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
-    catch_unwind(AssertUnwindSafe(work)).map_err(|panic| format!("this is a bug in Ambray: {}", message(&*panic)))
+    catch_unwind(AssertUnwindSafe(work))
+        .map_err(|panic| format!("this is a bug in Ambray: {}", message(&*panic)))
 }
 
 fn message(panic: &(dyn Any + Send)) -> String {

@@ -10,10 +10,7 @@ use std::{
     thread::JoinHandle,
 };
 
-use ambray::{
-    Control, RenderError, Renderer, RendererOptions,
-    scene::Scene,
-};
+use ambray::{Control, RenderError, Renderer, RendererOptions, scene::Scene};
 
 use ambray_files::scene_source;
 
@@ -128,7 +125,8 @@ impl Loader {
     fn load(&self, scene: &SceneRef, cancel: &AtomicBool) -> Result<(Ready, Vec<PathBuf>), String> {
         let tell = |stage, share| self.outbox.send(Event::Loading { scene: scene.clone(), stage, share });
         tell("reading", None);
-        let source = scene_source::open(&scene.path, scene.gltf_scene.as_deref()).map_err(|error| format!("{error:#}"))?;
+        let source = scene_source::open(&scene.path, scene.gltf_scene.as_deref())
+            .map_err(|error| format!("{error:#}"))?;
         if cancel.load(Ordering::Relaxed) {
             return Err(RenderError::Cancelled.to_string());
         }

@@ -75,8 +75,7 @@ impl Engine {
             outbox.clone(),
             follow.clone(),
         ));
-        let mut worker =
-            Worker::new(
+        let mut worker = Worker::new(
             Arc::clone(&inbox),
             outbox.clone(),
             Arc::clone(&gallery),

@@ -19,7 +19,9 @@ const PART: usize = 1 << 12;
 pub(super) fn pixels(frame: &Frame, aov: Aov, values: &[f32], settings: &Settings) -> Arc<Pixels> {
     let rgba = match aov.kind() {
         // Each pixel stands for itself, and mapping colours is what takes time.
-        AovKind::Color => values.par_chunks(3 * PART).flat_map_iter(|part| colors(part, aov, settings)).collect(),
+        AovKind::Color => {
+            values.par_chunks(3 * PART).flat_map_iter(|part| colors(part, aov, settings)).collect()
+        }
         _ => display::show(frame, aov, settings).rgba8(),
     };
     Arc::new(Pixels { width: frame.width, height: frame.height, rgba })

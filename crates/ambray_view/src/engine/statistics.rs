@@ -53,7 +53,10 @@ impl Statistics {
             histogram: histogram(values, channels, (low, high)),
             low,
             high,
-            mean: each.iter().map(|e| if e.count > 0 { (e.sum / e.count as f64) as f32 } else { 0.0 }).collect(),
+            mean: each
+                .iter()
+                .map(|e| if e.count > 0 { (e.sum / e.count as f64) as f32 } else { 0.0 })
+                .collect(),
         }
     }
 }

@@ -124,7 +124,9 @@ fn watcher(files: &BTreeSet<PathBuf>, changes: mpsc::Sender<Follow>) -> Option<R
             let _ = changes.send(Follow::Changed(event.paths));
         }
     };
-    let mut watcher = notify::recommended_watcher(tell).map_err(|error| log::warn!("changes are not followed: {error}")).ok()?;
+    let mut watcher = notify::recommended_watcher(tell)
+        .map_err(|error| log::warn!("changes are not followed: {error}"))
+        .ok()?;
     for folder in folders {
         if let Err(error) = watcher.watch(folder, RecursiveMode::NonRecursive) {
             log::warn!("changes in {} are not followed: {error}", folder.display());

@@ -6,8 +6,8 @@ use ambray::{Control, Drawn, Machine, RenderError, Renderer};
 use ambray_files::Interrupted;
 
 use super::{
-    device::Easel,
     contract::{Event, Export, Inspected},
+    device::Easel,
     export::Exporter,
     gallery::{Gallery, Shot},
     guard::caught,

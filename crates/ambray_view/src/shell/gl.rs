@@ -1,5 +1,8 @@
 //! Draws with OpenGL: where the processor renders, and needs no Vulkan.
-#![allow(unsafe_code, reason = "OpenGL is loaded from the system, and its context is made from handles of the window")]
+#![allow(
+    unsafe_code,
+    reason = "OpenGL is loaded from the system, and its context is made from handles of the window"
+)]
 
 use std::{ffi::CString, num::NonZeroU32, sync::Arc};
 
@@ -41,7 +44,9 @@ impl Gl {
             // GLX, WGL or CGL first: EGL on X11 is not there on every system.
             .with_preference(ApiPreference::FallbackEgl)
             .with_window_attributes(Some(attributes.clone()))
-            .build(event_loop, template, |configs| configs.min_by_key(plainness).expect("at least one configuration"))
+            .build(event_loop, template, |configs| {
+                configs.min_by_key(plainness).expect("at least one configuration")
+            })
             .map_err(|error| anyhow!("OpenGL: {error}"))?;
         let window = match window {
             Some(window) => window,
@@ -70,7 +75,8 @@ impl Gl {
 /// Configurations with eight bits a channel and nothing besides come first.
 fn plainness(config: &Config) -> (bool, u8, bool) {
     use glutin::config::ColorBufferType;
-    let is_rgb8 = config.color_buffer_type() == Some(ColorBufferType::Rgb { r_size: 8, g_size: 8, b_size: 8 });
+    let is_rgb8 =
+        config.color_buffer_type() == Some(ColorBufferType::Rgb { r_size: 8, g_size: 8, b_size: 8 });
     (!is_rgb8, config.num_samples(), config.srgb_capable())
 }
 
@@ -78,7 +84,8 @@ fn plainness(config: &Config) -> (bool, u8, bool) {
 fn context(window: &Window, config: &Config) -> anyhow::Result<NotCurrentContext> {
     let handle = window.window_handle().context("the window")?.as_raw();
     let plain = ContextAttributesBuilder::new().build(Some(handle));
-    let embedded = ContextAttributesBuilder::new().with_context_api(ContextApi::Gles(None)).build(Some(handle));
+    let embedded =
+        ContextAttributesBuilder::new().with_context_api(ContextApi::Gles(None)).build(Some(handle));
     // SAFETY: the handle is that of `window`, which the shell drops after the presenter that the context goes to.
     let make = |attributes| unsafe { config.display().create_context(config, attributes) };
     make(&plain).or_else(|_| make(&embedded)).context("OpenGL context")

@@ -64,7 +64,12 @@ pub(super) fn open(
             Ok((window, presenter)) => {
                 renderer.shared = Some(presenter.device().clone());
                 let pictures = Box::new(presenter.pictures().clone());
-                return Ok(Opened { window, presenter: Box::new(presenter), renderer, pictures: Some(pictures) });
+                return Ok(Opened {
+                    window,
+                    presenter: Box::new(presenter),
+                    renderer,
+                    pictures: Some(pictures),
+                });
             }
             Err(error) if options.backend == BackendChoice::Vulkan => {
                 // A device that renders but cannot draw is still what was asked for.

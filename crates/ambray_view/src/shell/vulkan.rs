@@ -63,15 +63,16 @@ impl Vulkan {
     }
 
     /// Brings the textures up to date.
-    fn update(&mut self, textures: TexturesDelta) -> Result<(), VulkanError> {
-        for (id, deltas) in textures.set {
+    fn update(&mut self, mut textures: TexturesDelta) -> Result<(), VulkanError> {
+        for (id, deltas) in std::mem::take(&mut textures.set) {
             for delta in deltas {
                 let ImageData::Color(image) = &delta.image;
                 let whole = |at: [usize; 2]| at.map(|side| side as u32);
                 if image.pixels.is_empty() {
                     continue;
                 }
-                let (magnified, minified) = (filter(delta.options.magnification), filter(delta.options.minification));
+                let (magnified, minified) =
+                    (filter(delta.options.magnification), filter(delta.options.minification));
                 let upload = Upload {
                     at: delta.pos.map(whole),
                     size: whole(image.size),
@@ -81,7 +82,7 @@ impl Vulkan {
                 self.screen.upload(number(id), &upload)?;
             }
         }
-        for id in textures.free {
+        for id in std::mem::take(&mut textures.free) {
             self.screen.forget(number(id));
         }
         let screen = &mut self.screen;

@@ -84,7 +84,8 @@ impl Shell {
             None => (Store::none(), Memory::default(), None),
         };
         let title = title(&options.scene.path.display().to_string());
-        let remembered = memory.window.unwrap_or(WindowState { width: SIZE.0, height: SIZE.1, is_maximized: false });
+        let remembered =
+            memory.window.unwrap_or(WindowState { width: SIZE.0, height: SIZE.1, is_maximized: false });
         let attributes = WindowAttributes::default()
             .with_title(&title)
             .with_inner_size(LogicalSize::new(remembered.width.max(LEAST.0), remembered.height.max(LEAST.1)))
@@ -93,7 +94,8 @@ impl Shell {
             .with_window_icon(icon())
             // Shown when there is something to see.
             .with_visible(false);
-        let Opened { window, presenter, renderer, pictures } = present::open(event_loop, &attributes, &options.renderer)?;
+        let Opened { window, presenter, renderer, pictures } =
+            present::open(event_loop, &attributes, &options.renderer)?;
 
         let context = egui::Context::default();
         let proxy = self.proxy.clone();
@@ -255,7 +257,8 @@ impl Open {
         let size = self.window.inner_size().to_logical::<f32>(self.window.scale_factor());
         let now = WindowState { width: size.width, height: size.height, is_maximized };
         let before = self.app.memory.window.unwrap_or(now);
-        self.app.memory.window = Some(if is_maximized { WindowState { is_maximized, ..before } } else { now });
+        self.app.memory.window =
+            Some(if is_maximized { WindowState { is_maximized, ..before } } else { now });
     }
 
     /// Names the scene in the window's title.

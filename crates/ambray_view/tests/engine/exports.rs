@@ -55,7 +55,10 @@ fn screenshots_are_the_files_of_the_program() {
     // The plane that is shown takes the place of the picture.
     let path = ours.with_extension("png");
     let settings = wanted.clone();
-    assert_eq!(written(&mut desk, Export::Screenshot { path: path.clone(), settings, aov: Aov::Openness }), Ok(()));
+    assert_eq!(
+        written(&mut desk, Export::Screenshot { path: path.clone(), settings, aov: Aov::Openness }),
+        Ok(())
+    );
     program(&theirs.with_extension("png"), &wanted, &[Aov::Openness]);
     let expected = fs::read(folder.path().join("theirs.openness.png")).expect("a file");
     assert!(fs::read(&path).expect("a file") == expected);
@@ -70,7 +73,10 @@ fn accumulated_light_is_in_the_screenshot() {
     desk.engine.show(order(&wanted));
     desk.picture(Side::A, |picture| picture.frames == 256);
     let settings = wanted.clone();
-    assert_eq!(written(&mut desk, Export::Screenshot { path: path.clone(), settings, aov: Aov::Beauty }), Ok(()));
+    assert_eq!(
+        written(&mut desk, Export::Screenshot { path: path.clone(), settings, aov: Aov::Beauty }),
+        Ok(())
+    );
     let head = Head::read(&path).expect("a file").expect("a picture");
     assert_eq!(head.scene.as_deref(), Some("atrium, accumulated from frame 0 at 30 fps"));
     assert!(head.settings.expect("settings").contains("frame = 255"));

@@ -38,7 +38,8 @@ fn a_still_view_accumulates_the_frames_of_the_sequence() {
     assert!(shown.frames >= rendered.frames);
     let other = Settings { radius: Auto::Value(0.5), ..wanted };
     desk.engine.show(order(&other));
-    let first = desk.picture(Side::A, |picture| picture.settings.radius == other.radius && picture.level.is_final);
+    let first =
+        desk.picture(Side::A, |picture| picture.settings.radius == other.radius && picture.level.is_final);
     assert_same(host(&first).0, &sequence(&other, first.frames));
     let last = desk.picture(Side::A, |picture| picture.frames == 256);
     assert_same(host(&last).0, &sequence(&other, 256));
@@ -70,9 +71,8 @@ fn an_animation_plays_and_the_moment_where_it_stops_is_refined() {
         desk.picture(Side::A, |picture| picture.settings.time == at(i).time);
     }
     desk.engine.show(order(&at(11)));
-    let is_there = |event: &Event| {
-        matches!(event, Event::Picture(p) if p.level.is_final && p.settings == at(11))
-    };
+    let is_there =
+        |event: &Event| matches!(event, Event::Picture(p) if p.level.is_final && p.settings == at(11));
     // It may have played at full quality.
     if !desk.events.iter().any(is_there) {
         desk.finished(Side::A, &at(11));
@@ -87,11 +87,8 @@ fn an_animation_plays_and_the_moment_where_it_stops_is_refined() {
 #[test]
 fn frames_that_play_count_up_where_light_accumulates() {
     let mut desk = Desk::with("banner");
-    let at = |i: u32| Settings {
-        time: Auto::Value(i as f32 / 24.0),
-        temporal: Temporal::On,
-        ..settings(32, 18)
-    };
+    let at =
+        |i: u32| Settings { time: Auto::Value(i as f32 / 24.0), temporal: Temporal::On, ..settings(32, 18) };
     let mut frames = Vec::new();
     for i in 0..8 {
         desk.engine.show(Order { is_playing: true, ..order(&at(i)) });

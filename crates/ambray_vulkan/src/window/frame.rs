@@ -160,10 +160,12 @@ fn record(
         device.cmd_bind_vertex_buffers(buffer, 0, &[corners.handle()], &[0]);
         device.cmd_bind_index_buffer(buffer, indices.handle(), 0, vk::IndexType::UINT32);
         for mesh in &painting.meshes {
-            let (Some(texture), Some(clip)) = (textures.get(mesh.texture), clip(mesh.clip, target.extent)) else {
+            let (Some(texture), Some(clip)) = (textures.get(mesh.texture), clip(mesh.clip, target.extent))
+            else {
                 continue;
             };
-            let Some(used) = painting.indices.get(mesh.indices.start as usize..mesh.indices.end as usize) else {
+            let Some(used) = painting.indices.get(mesh.indices.start as usize..mesh.indices.end as usize)
+            else {
                 continue;
             };
             let end = used.iter().max().map_or(0, |&most| u64::from(most) + u64::from(mesh.first_corner) + 1);

@@ -110,9 +110,8 @@ impl Swapchain {
                 return Ok(None);
             }
             // SAFETY: the swapchain is ours; the semaphore is not in use: the frame that waits for it was waited for.
-            let acquired = unsafe {
-                self.loader.acquire_next_image(self.handle, u64::MAX, signal, vk::Fence::null())
-            };
+            let acquired =
+                unsafe { self.loader.acquire_next_image(self.handle, u64::MAX, signal, vk::Fence::null()) };
             match acquired {
                 Ok((index, is_stale)) => return Ok(Some(Acquired { index, is_stale })),
                 Err(vk::Result::ERROR_OUT_OF_DATE_KHR) => self.is_stale = true,
@@ -138,8 +137,10 @@ impl Swapchain {
     pub(super) fn present(&mut self, index: u32, is_stale: bool) -> Result<()> {
         let (handles, indices) = ([self.handle], [index]);
         let drawn = [self.images[index as usize].drawn];
-        let info =
-            vk::PresentInfoKHR::default().wait_semaphores(&drawn).swapchains(&handles).image_indices(&indices);
+        let info = vk::PresentInfoKHR::default()
+            .wait_semaphores(&drawn)
+            .swapchains(&handles)
+            .image_indices(&indices);
         // SAFETY: the image was acquired, and the semaphore is signalled by the submission that draws it; the queue is locked
         // while it takes the call.
         let presented = unsafe { self.loader.queue_present(*self.context.queue(), &info) };
@@ -243,7 +244,10 @@ impl Drop for Swapchain {
 impl std::fmt::Debug for Swapchain {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let images = self.images.len();
-        f.debug_struct("Swapchain").field("extent", &self.extent).field("images", &images).finish_non_exhaustive()
+        f.debug_struct("Swapchain")
+            .field("extent", &self.extent)
+            .field("images", &images)
+            .finish_non_exhaustive()
     }
 }
 

@@ -134,7 +134,8 @@ impl Exporter<'_> {
         let center = 0.5 * low + 0.5 * high;
         self.renderer.forget_frames();
         for number in 0..frames {
-            let mut settings = turntable::turned(settings, &view.camera, center, number as f32 / frames as f32);
+            let mut settings =
+                turntable::turned(settings, &view.camera, center, number as f32 / frames as f32);
             if settings.temporal == Temporal::On {
                 settings.frame = settings.frame.wrapping_add(number);
             }

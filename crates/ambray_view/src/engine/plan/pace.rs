@@ -2,10 +2,7 @@
 
 use ambray::settings::Size;
 
-use super::{
-    levels::cost,
-    rate::Rate,
-};
+use super::{levels::cost, rate::Rate};
 use crate::engine::contract::Level;
 
 /// A coarser level is taken where a picture would take longer, seconds.

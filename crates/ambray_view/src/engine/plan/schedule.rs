@@ -201,8 +201,10 @@ impl Schedule {
     /// The next frame of a view that stands still.
     fn accumulate(&self) -> Option<Step> {
         let continued = |side: Side| self.history.filter(|(of, _)| *of == side).map(|(_, frames)| frames);
-        let (side, work) =
-            self.open().filter(|(_, work)| work.goes_on()).max_by_key(|(side, _)| (continued(*side).is_some(), side.other() as u8))?;
+        let (side, work) = self
+            .open()
+            .filter(|(_, work)| work.goes_on())
+            .max_by_key(|(side, _)| (continued(*side).is_some(), side.other() as u8))?;
         // Where something else was rendered in between, the renderer has forgotten the frames before.
         let before = continued(side).unwrap_or(0);
         let mut settings = work.settings.clone();

@@ -235,7 +235,8 @@ fn write_png(path: &Path, pixels: &Pixels) -> anyhow::Result<()> {
         let file = std::io::BufWriter::new(fs::File::create(path)?);
         let mut encoder = png::Encoder::new(file, pixels.width, pixels.height);
         encoder.set_color(png::ColorType::Rgb);
-        let rgb: Vec<u8> = pixels.rgba.chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
+        let rgb: Vec<u8> =
+            pixels.rgba.chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
         let mut writer = encoder.write_header()?;
         writer.write_image_data(&rgb)?;
         Ok(writer.finish()?)
