@@ -168,7 +168,8 @@ impl Schedule {
     /// The next level of the side that is behind.
     fn refine(&self) -> Option<Step> {
         let behind = |(side, work): &(Side, &Work)| {
-            let shown = work.shown.map_or((0.0, 0), |level| (level.scale, level.spp));
+            let asked = work.settings.spp as f32;
+            let shown = work.shown.map_or((0.0, 0.0), |level| (level.scale, level.spp as f32 / asked));
             (shown, self.last == Some(*side))
         };
         let (side, work) = self
@@ -252,3 +253,7 @@ impl Schedule {
         }
     }
 }
+
+#[cfg(test)]
+#[path = "schedule_tests.rs"]
+mod tests;
