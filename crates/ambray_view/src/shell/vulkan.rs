@@ -63,16 +63,17 @@ impl Vulkan {
     }
 
     /// Brings the textures up to date.
-    fn update(&mut self, mut textures: TexturesDelta) -> Result<(), VulkanError> {
-        for (id, deltas) in std::mem::take(&mut textures.set) {
+    fn update(&mut self, textures: &mut TexturesDelta) -> Result<(), VulkanError> {
+        // Taken at once: what is left of them where this fails is nobody's.
+        let (set, free) = (std::mem::take(&mut textures.set), std::mem::take(&mut textures.free));
+        for (id, deltas) in set {
             for delta in deltas {
                 let ImageData::Color(image) = &delta.image;
                 let whole = |at: [usize; 2]| at.map(|side| side as u32);
                 if image.pixels.is_empty() {
                     continue;
                 }
-                let (magnified, minified) =
-                    (filter(delta.options.magnification), filter(delta.options.minification));
+                let (magnified, minified) = (filter(delta.options.magnification), filter(delta.options.minification));
                 let upload = Upload {
                     at: delta.pos.map(whole),
                     size: whole(image.size),
@@ -82,7 +83,7 @@ impl Vulkan {
                 self.screen.upload(number(id), &upload)?;
             }
         }
-        for id in std::mem::take(&mut textures.free) {
+        for id in free {
             self.screen.forget(number(id));
         }
         let screen = &mut self.screen;
@@ -107,8 +108,8 @@ impl Presenter for Vulkan {
         self.screen.resize(size.into());
     }
 
-    fn paint(&mut self, window: &Window, painting: Painting) -> anyhow::Result<Option<Pixels>> {
-        self.update(painting.textures)?;
+    fn paint(&mut self, window: &Window, mut painting: Painting) -> anyhow::Result<Option<Pixels>> {
+        self.update(&mut painting.textures)?;
         let size = window.inner_size();
         let triangles = triangles(&painting.primitives, painting.pixels_per_point, size);
         self.screen.resize(size.into());
