@@ -51,7 +51,7 @@ fn harmless(text: &str) -> Cow<'_, str> {
     Cow::Owned(text.chars().map(spell).collect())
 }
 
-/// Shows warnings that libraries log.
+/// Shows warnings that Ambray's libraries log.
 pub fn log_warnings() {
     // Fails only if a logger is set already, which then shows them.
     if log::set_logger(&WARNINGS).is_ok() {
@@ -74,7 +74,9 @@ struct Warnings;
 
 impl Log for Warnings {
     fn enabled(&self, metadata: &Metadata<'_>) -> bool {
-        metadata.level() <= log::Level::Warn
+        // Libraries of windows warn of desktops that lack something, which is nobody's business here.
+        let is_ours = ["ambray", "gpu_allocator"].iter().any(|name| metadata.target().starts_with(name));
+        is_ours && metadata.level() <= log::Level::Warn
     }
 
     fn log(&self, record: &Record<'_>) {

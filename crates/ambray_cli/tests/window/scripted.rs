@@ -14,13 +14,13 @@ const QUICK: [&str; 2] = ["--spp=2", "--radius=1"];
 fn the_window_shows_what_the_copied_command_line_renders() {
     let Some(display) = Display::start() else { return };
     let place = Place::new();
-    let walk = "resize 1000 640\nwait\nexpect no-error\nscreenshot window.png\ncopy line.txt\n";
+    let walk = "resize 1440 900\nwait\nexpect no-error\nscreenshot window.png\ncopy line.txt\n";
     let arguments = [&["--backend", "cpu"], &QUICK[..]].concat();
     assert_quiet(&place.walk(&display, &arguments, walk));
     place.run_line("line.txt", &["--backend", "cpu", "--quiet", "-o", "picture.png"]);
     let (window, picture) =
         (Picture::read(&place.path("window.png")), Picture::read(&place.path("picture.png")));
-    assert_eq!((window.width, window.height), (1000, 640));
+    assert_eq!((window.width, window.height), (1440, 900));
     assert!(picture.colours() > 1000, "{} colours", picture.colours());
     let found = window.find(&picture, 0).expect("the picture is in the window, byte for byte");
     let (anywhere, middle) = differing(&window, &picture, found, 0);
@@ -32,9 +32,9 @@ fn the_window_shows_what_the_copied_command_line_renders() {
 fn a_vulkan_device_presents_what_it_renders_and_the_validation_layer_is_silent() {
     let (Some(display), Some(driver)) = (Display::start(), lavapipe()) else { return };
     let place = Place::new();
-    let walk = "resize 900 560\nwait\nexpect no-error\nscreenshot window.png\ncopy line.txt\n\
-                resize 700 500\nset spp 1\nside b\ncompare split\nset spp 3\ndivider 0.25\nwait\nscreenshot split.png\n\
-                drop nothing.glb\nwait\nexpect error nothing.glb\nexpect error no such\nresize 900 560\nwait\n";
+    let walk = "resize 1300 700\nwait\nexpect no-error\nscreenshot window.png\ncopy line.txt\n\
+                resize 1200 640\nset spp 1\nside b\ncompare split\nset spp 3\ndivider 0.25\nwait\nscreenshot split.png\n\
+                drop nothing.glb\nwait\nexpect error nothing.glb\nexpect error no such\nresize 1300 700\nwait\n";
     fs::write(place.path("walk.txt"), walk).expect("script");
     let mut command =
         place.view(&display, &["--no-memory", "--script", "walk.txt", "--backend", "vulkan", "--validation"]);
@@ -49,14 +49,14 @@ fn a_vulkan_device_presents_what_it_renders_and_the_validation_layer_is_silent()
     let (_, middle) = differing(&window, &picture, found, 2);
     assert!(middle < 0.005, "{middle} of the pixels differ");
     let split = Picture::read(&place.path("split.png"));
-    assert_eq!((split.width, split.height), (700, 500));
+    assert_eq!((split.width, split.height), (1200, 640));
 }
 
 #[test]
 fn the_divider_says_which_side_is_seen() {
     let Some(display) = Display::start() else { return };
     let place = Place::new();
-    let walk = "resize 900 560\nside b\nset exposure 1.5\nside a\ncompare split\n\
+    let walk = "resize 1300 700\nside b\nset exposure 1.5\nside a\ncompare split\n\
                 divider 0.3\nwait\nscreenshot left.png\ndivider 0.7\nwait\nscreenshot right.png\nexpect no-error\n";
     let arguments = [&["--backend", "cpu"], &QUICK[..]].concat();
     let walk = walk.replace("exposure 1.5", "spp 7");
@@ -75,7 +75,7 @@ fn a_bad_file_that_is_dropped_says_so_and_the_picture_stays() {
     let Some(display) = Display::start() else { return };
     let place = Place::new();
     fs::write(place.path("bad.glb"), "glTF, or rather not").expect("file");
-    let walk = "resize 900 560\nwait\nscreenshot before.png\ndrop bad.glb\nwait\nexpect error bad.glb\n\
+    let walk = "resize 1300 700\nwait\nscreenshot before.png\ndrop bad.glb\nwait\nexpect error bad.glb\n\
                 screenshot after.png\ncopy line.txt\n";
     let arguments = [&["--backend", "cpu"], &QUICK[..]].concat();
     assert_quiet(&place.walk(&display, &arguments, walk));

@@ -73,7 +73,8 @@ impl Vulkan {
                 if image.pixels.is_empty() {
                     continue;
                 }
-                let (magnified, minified) = (filter(delta.options.magnification), filter(delta.options.minification));
+                let (magnified, minified) =
+                    (filter(delta.options.magnification), filter(delta.options.minification));
                 let upload = Upload {
                     at: delta.pos.map(whole),
                     size: whole(image.size),
