@@ -34,7 +34,7 @@ fn a_vulkan_device_presents_what_it_renders_and_the_validation_layer_is_silent()
     let place = Place::new();
     let walk = "resize 1300 700\nwait\nexpect no-error\nscreenshot window.png\ncopy line.txt\n\
                 resize 1200 640\nset spp 1\nside b\ncompare split\nset spp 3\ndivider 0.25\nwait\nscreenshot split.png\n\
-                drop nothing.glb\nwait\nexpect error nothing.glb\nexpect error no such\nresize 1300 700\nwait\n";
+                drop nothing.glb\nwait\nexpect error nothing.glb\nexpect error No such\nresize 1300 700\nwait\n";
     fs::write(place.path("walk.txt"), walk).expect("script");
     let mut command =
         place.view(&display, &["--no-memory", "--script", "walk.txt", "--backend", "vulkan", "--validation"]);
@@ -66,7 +66,8 @@ fn the_divider_says_which_side_is_seen() {
     let columns: Vec<usize> = (0..left.width).filter(|&x| differs(x)).collect();
     let (first, last) = (columns[0], columns[columns.len() - 1]);
     // What lies between the two places of the divider was B and is A.
-    assert!(last - first > left.width / 5, "columns {first} to {last}");
+    // The canvas is about 430 pixels wide beside the panels, of which the divider crosses four tenths.
+    assert!(last - first > 150, "columns {first} to {last}");
     assert!(columns.len() > (last - first) / 2);
 }
 

@@ -11,7 +11,7 @@ use x11rb::{
     protocol::{
         xproto::{
             BUTTON_PRESS_EVENT, BUTTON_RELEASE_EVENT, ClientMessageEvent, ConnectionExt as _, EventMask,
-            ImageFormat, KEY_PRESS_EVENT, KEY_RELEASE_EVENT, MOTION_NOTIFY_EVENT, Window,
+            ImageFormat, InputFocus, KEY_PRESS_EVENT, KEY_RELEASE_EVENT, MOTION_NOTIFY_EVENT, Window,
         },
         xtest::ConnectionExt as _,
     },
@@ -158,6 +158,9 @@ fn keys_the_mouse_and_the_cross_of_the_window_work() {
     let mut command = place.view(&display, &["--backend", "cpu", "--spp=1", "--memory", "memory/view.toml"]);
     let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts");
     let window = Touched::find(&display);
+    // What a window manager would do: without the focus no keys arrive.
+    let focus = window.server.set_input_focus(InputFocus::PARENT, window.window, x11rb::CURRENT_TIME);
+    focus.expect("sent").check().expect("focus");
     let first = window.settled(&[]);
     // The picture is in the middle. Keys go where the pointer is: there is no window manager.
     window.fake(MOTION_NOTIFY_EVENT, 0, 720, 450);
