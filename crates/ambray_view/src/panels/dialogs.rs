@@ -45,19 +45,21 @@ impl Dialogs {
 
     /// Begins to ask; `name` is what files are called unless the user says otherwise.
     pub(super) fn ask(&mut self, question: Question, name: &str) {
-        if let Question::Turntable { frames, fps } = question
-            && self.turntable.is_none()
-        {
-            self.turntable = Some(Turntable { frames, fps, name: format!("{name}_####.png") });
-            return;
+        match question {
+            // Its plan comes first; one that is being made is not begun anew.
+            Question::Turntable { frames, fps } => {
+                let begin = || Turntable { frames, fps, name: format!("{name}_####.png") };
+                self.turntable.get_or_insert_with(begin);
+            }
+            Question::Save => self.ask_for_file(question, &format!("{name}.toml")),
+            Question::Scene | Question::Load | Question::Screenshot => {
+                self.ask_for_file(question, &format!("{name}.png"));
+            }
         }
-        let file_name = match (&self.turntable, question) {
-            (Some(turntable), Question::Turntable { .. }) => turntable.name.clone(),
-            (_, Question::Save) => format!("{name}.toml"),
-            _ => format!("{name}.png"),
-        };
-        self.turntable = None;
-        let mut dialog = FileDialog::new().title(title(question)).default_file_name(&file_name);
+    }
+
+    fn ask_for_file(&mut self, question: Question, file_name: &str) {
+        let mut dialog = FileDialog::new().title(title(question)).default_file_name(file_name);
         if let Some(folder) = &self.folder {
             dialog = dialog.initial_directory(folder.clone());
         }
@@ -79,7 +81,7 @@ impl Dialogs {
     }
 
     pub(super) fn show(&mut self, ctx: &Context, desk: &mut Desk<'_>) {
-        self.turntable(ctx, desk);
+        self.plan_turntable(ctx);
         let Some((question, dialog)) = &mut self.open else { return };
         dialog.update(ctx);
         if let Some(path) = dialog.take_picked() {
@@ -91,7 +93,7 @@ impl Dialogs {
         }
     }
 
-    fn turntable(&mut self, ctx: &Context, desk: &mut Desk<'_>) {
+    fn plan_turntable(&mut self, ctx: &Context) {
         let Some(turntable) = &mut self.turntable else { return };
         let (mut is_open, mut is_decided, mut is_cancelled) = (true, false, false);
         let window = Window::new("Turntable").open(&mut is_open).collapsible(false).resizable(false);
@@ -114,8 +116,10 @@ impl Dialogs {
             });
         });
         if is_decided {
-            let question = Question::Turntable { frames: turntable.frames, fps: turntable.fps };
-            desk.actions.push(Action::Ask(question));
+            let Turntable { frames, fps, ref name } = *turntable;
+            let name = name.clone();
+            self.turntable = None;
+            self.ask_for_file(Question::Turntable { frames, fps }, &name);
         } else if !is_open || is_cancelled {
             self.turntable = None;
         }

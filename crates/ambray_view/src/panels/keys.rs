@@ -21,7 +21,8 @@ pub struct Shortcut {
     pub keys: &'static str,
     /// What it does, in words.
     pub meaning: &'static str,
-    trigger: Trigger,
+    /// Any of them.
+    triggers: &'static [Trigger],
     /// Made from the digit, or from 0.
     action: fn(u8) -> Action,
 }
@@ -29,10 +30,10 @@ pub struct Shortcut {
 const fn shortcut(
     keys: &'static str,
     meaning: &'static str,
-    trigger: Trigger,
+    triggers: &'static [Trigger],
     action: fn(u8) -> Action,
 ) -> Shortcut {
-    Shortcut { keys, meaning, trigger, action }
+    Shortcut { keys, meaning, triggers, action }
 }
 
 const NONE: Modifiers = Modifiers::NONE;
@@ -41,36 +42,42 @@ const SHIFT: Modifiers = Modifiers::SHIFT;
 
 /// All shortcuts of the panels; where two match, the first one counts.
 pub const SHORTCUTS: &[Shortcut] = &[
-    shortcut("Ctrl+O", "Open a scene", Trigger::Key(CTRL, Key::O), |_| Action::Ask(Question::Scene)),
-    shortcut("F5", "Read the scene again", Trigger::Key(NONE, Key::F5), |_| Action::Reload),
-    shortcut("Ctrl+L", "Load settings", Trigger::Key(CTRL, Key::L), |_| Action::Ask(Question::Load)),
-    shortcut("Ctrl+Shift+S", "Save settings", Trigger::Key(CTRL.plus(SHIFT), Key::S), |_| {
+    shortcut("Ctrl+O", "Open a scene", &[Trigger::Key(CTRL, Key::O)], |_| Action::Ask(Question::Scene)),
+    shortcut("F5", "Read the scene again", &[Trigger::Key(NONE, Key::F5)], |_| Action::Reload),
+    shortcut("Ctrl+L", "Load settings", &[Trigger::Key(CTRL, Key::L)], |_| Action::Ask(Question::Load)),
+    shortcut("Ctrl+Shift+S", "Save settings", &[Trigger::Key(CTRL.plus(SHIFT), Key::S)], |_| {
         Action::Ask(Question::Save)
     }),
-    shortcut("Ctrl+S", "Save a screenshot", Trigger::Key(CTRL, Key::S), |_| {
+    shortcut("Ctrl+S", "Save a screenshot", &[Trigger::Key(CTRL, Key::S)], |_| {
         Action::Ask(Question::Screenshot)
     }),
-    shortcut("Ctrl+Shift+C", "Copy as command line", Trigger::Key(CTRL.plus(SHIFT), Key::C), |_| {
+    shortcut("Ctrl+Shift+C", "Copy as command line", &[Trigger::Key(CTRL.plus(SHIFT), Key::C)], |_| {
         Action::Copy(Side::A)
     }),
+    shortcut("Ctrl+Z", "Undo the last change of the settings", &[Trigger::Key(CTRL, Key::Z)], |_| {
+        Action::Undo
+    }),
     shortcut(
-        "Ctrl+Shift+Z",
+        "Ctrl+Y, Ctrl+Shift+Z",
         "Redo the change of the settings",
-        Trigger::Key(CTRL.plus(SHIFT), Key::Z),
+        &[Trigger::Key(CTRL, Key::Y), Trigger::Key(CTRL.plus(SHIFT), Key::Z)],
         |_| Action::Redo,
     ),
-    shortcut("Ctrl+Y", "Redo the change of the settings", Trigger::Key(CTRL, Key::Y), |_| Action::Redo),
-    shortcut("Ctrl+Z", "Undo the last change of the settings", Trigger::Key(CTRL, Key::Z), |_| Action::Undo),
-    shortcut("Ctrl+Q", "Quit", Trigger::Key(CTRL, Key::Q), |_| Action::Quit),
-    shortcut("Space", "Play or pause the animation", Trigger::Key(NONE, Key::Space), |_| Action::TogglePlay),
-    shortcut(".", "Step the animation forward", Trigger::Key(NONE, Key::Period), |_| Action::Step(1)),
-    shortcut(",", "Step the animation back", Trigger::Key(NONE, Key::Comma), |_| Action::Step(-1)),
-    shortcut("Tab", "Show or hide the panels", Trigger::Key(NONE, Key::Tab), |_| Action::TogglePanels),
-    shortcut("Shift+1 to 9", "Keep the view under the digit", Trigger::Digit(SHIFT), Action::Keep),
-    shortcut("1 to 9", "Go back to the view of the digit", Trigger::Digit(NONE), Action::Recall),
-    shortcut("?", "Show or hide this help", Trigger::Key(NONE, Key::Questionmark), |_| Action::ToggleHelp),
-    shortcut("F1", "Show or hide this help", Trigger::Key(NONE, Key::F1), |_| Action::ToggleHelp),
-    shortcut("H", "Show or hide this help", Trigger::Key(NONE, Key::H), |_| Action::ToggleHelp),
+    shortcut("Ctrl+Q", "Quit", &[Trigger::Key(CTRL, Key::Q)], |_| Action::Quit),
+    shortcut("Space", "Play or pause the animation", &[Trigger::Key(NONE, Key::Space)], |_| {
+        Action::TogglePlay
+    }),
+    shortcut(".", "Step the animation forward", &[Trigger::Key(NONE, Key::Period)], |_| Action::Step(1)),
+    shortcut(",", "Step the animation back", &[Trigger::Key(NONE, Key::Comma)], |_| Action::Step(-1)),
+    shortcut("Tab", "Show or hide the panels", &[Trigger::Key(NONE, Key::Tab)], |_| Action::TogglePanels),
+    shortcut("Shift+1 to 9", "Keep the view under the digit", &[Trigger::Digit(SHIFT)], Action::Keep),
+    shortcut("1 to 9", "Go back to the view of the digit", &[Trigger::Digit(NONE)], Action::Recall),
+    shortcut(
+        "?, F1, H",
+        "Show or hide this help",
+        &[Trigger::Key(NONE, Key::Questionmark), Trigger::Key(NONE, Key::F1), Trigger::Key(NONE, Key::H)],
+        |_| Action::ToggleHelp,
+    ),
 ];
 
 const DIGITS: [Key; 9] =
@@ -98,7 +105,7 @@ fn action_of(event: &Event, is_typing: bool) -> Option<Action> {
         return None;
     }
     SHORTCUTS.iter().find_map(|shortcut| {
-        let digit = match shortcut.trigger {
+        let digit = shortcut.triggers.iter().find_map(|trigger| match *trigger {
             Trigger::Key(wanted, wanted_key) => {
                 (*key == wanted_key && matches(*modifiers, wanted, wanted_key)).then_some(0)
             }
@@ -108,7 +115,7 @@ fn action_of(event: &Event, is_typing: bool) -> Option<Action> {
                 .position(|digit| key == digit || *physical_key == Some(*digit))
                 .filter(|_| modifiers.shift == wanted.shift && !modifiers.command && !modifiers.alt)
                 .map(|i| i as u8 + 1),
-        }?;
+        })?;
         Some((shortcut.action)(digit))
     })
 }
@@ -132,7 +139,10 @@ mod tests {
         assert_eq!(press(Key::O, None, NONE), None);
         assert_eq!(press(Key::S, None, CTRL), Some(Action::Ask(Question::Screenshot)));
         assert_eq!(press(Key::S, None, CTRL.plus(SHIFT)), Some(Action::Ask(Question::Save)));
-        assert_eq!(press(Key::Z, None, CTRL.plus(SHIFT)), Some(Action::Redo));
+        assert_eq!(press(Key::Z, None, CTRL), Some(Action::Undo));
+        for (key, modifiers) in [(Key::Z, CTRL.plus(SHIFT)), (Key::Y, CTRL)] {
+            assert_eq!(press(key, None, modifiers), Some(Action::Redo));
+        }
         assert_eq!(press(Key::Questionmark, Some(Key::Slash), SHIFT), Some(Action::ToggleHelp));
         assert_eq!(press(Key::Num3, Some(Key::Num3), NONE), Some(Action::Recall(3)));
         assert_eq!(press(Key::Exclamationmark, Some(Key::Num1), SHIFT), Some(Action::Keep(1)));

@@ -1,9 +1,10 @@
 //! Colours, sizes and small parts that all panels share.
 
-use egui::{Align2, Color32, CornerRadius, FontId, Response, RichText, Sense, Stroke, TextStyle, Ui, vec2};
+use egui::{
+    Align, Align2, Color32, CornerRadius, FontId, Label, Layout, Rect, Response, RichText, Sense, Stroke,
+    TextStyle, Ui, UiBuilder, pos2, vec2,
+};
 
-/// Width of the names of settings.
-pub const NAME_WIDTH: f32 = 112.0;
 /// What is worth a look: changed settings, the chosen tab.
 pub const ACCENT: Color32 = Color32::from_rgb(232, 164, 74);
 /// Side A.
@@ -44,6 +45,7 @@ pub fn apply(ctx: &egui::Context) {
         style.spacing.button_padding = vec2(6.0, 2.0);
         style.spacing.interact_size.y = 19.0;
         style.spacing.combo_height = 320.0;
+        style.spacing.scroll.floating_allocated_width = 8.0;
         style.interaction.tooltip_delay = 0.4;
         let visuals = &mut style.visuals;
         visuals.panel_fill = Color32::from_gray(34);
@@ -64,6 +66,14 @@ pub fn apply(ctx: &egui::Context) {
     });
 }
 
+/// Draws into `place` and nowhere else: what does not fit is cut off, and takes no room.
+pub fn inside<R>(ui: &mut Ui, place: Rect, add: impl FnOnce(&mut Ui) -> R) -> R {
+    let layout = Layout::left_to_right(Align::Center);
+    let mut child = ui.new_child(UiBuilder::new().max_rect(place).layout(layout));
+    child.shrink_clip_rect(place.expand(2.0)); // frames of hovered parts reach a little farther
+    add(&mut child)
+}
+
 /// A dot to click; says what it does when hovered. Drawn rather than written, so that no font can lack it.
 pub fn dot(ui: &mut Ui, color: Option<Color32>, label: &str) -> Response {
     let sense = if color.is_some() { Sense::click() } else { Sense::hover() };
@@ -76,11 +86,43 @@ pub fn dot(ui: &mut Ui, color: Option<Color32>, label: &str) -> Response {
     response
 }
 
-/// A number beside its name, in a grid of two columns.
+/// A part of a row that is `width` wide, whatever is in it.
+pub fn cell<R>(ui: &mut Ui, width: f32, add: impl FnOnce(&mut Ui) -> R) -> R {
+    let shown = ui.vertical(|ui| {
+        ui.set_width(width);
+        add(ui)
+    });
+    shown.inner
+}
+
+/// Width of the names of facts.
+const FACT_WIDTH: f32 = 82.0;
+
+/// A value beside its name.
 pub fn fact(ui: &mut Ui, name: &str, value: impl Into<String>) {
-    ui.label(RichText::new(name).weak());
-    ui.label(RichText::new(value).monospace());
-    ui.end_row();
+    ui.horizontal_top(|ui| {
+        cell(ui, FACT_WIDTH, |ui| ui.add(Label::new(RichText::new(name).weak()).truncate()));
+        ui.add(Label::new(RichText::new(value).monospace()).wrap());
+    });
+}
+
+/// Names with numbers at the right ends of their columns, beside each other.
+pub fn columns<const N: usize>(ui: &mut Ui, cells: [Option<(RichText, String)>; N]) {
+    const GAP: f32 = 12.0;
+    let size = vec2(ui.available_width(), ui.text_style_height(&TextStyle::Body));
+    let (_, row) = ui.allocate_space(size);
+    let width = (row.width() - (N - 1) as f32 * GAP) / N as f32;
+    for (i, (name, value)) in cells.into_iter().enumerate().filter_map(|(i, cell)| Some((i, cell?))) {
+        let left = row.left() + i as f32 * (width + GAP);
+        let place = Rect::from_min_size(pos2(left, row.top()), vec2(width, row.height()));
+        inside(ui, place, |ui| {
+            ui.spacing_mut().item_spacing.x = 2.0;
+            ui.add(Label::new(name).selectable(false));
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                ui.add(Label::new(RichText::new(value).monospace()).extend());
+            });
+        });
+    }
 }
 
 /// A bar with a share of it filled and text on it.

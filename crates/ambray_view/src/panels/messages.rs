@@ -1,6 +1,6 @@
-//! What is going on and what has happened: a strip and cards over the picture, which never stop the work.
+//! What is going on and what has happened: a strip and cards at the bottom of the picture, which never stop the work.
 
-use egui::{Align2, Area, Color32, Context, Frame, Id, Order, RichText, Stroke, Ui};
+use egui::{Align2, Area, Color32, Context, Frame, Id, Order, Rect, RichText, Stroke, Ui, vec2};
 
 use super::{Desk, action::Action, look};
 use crate::app::{Notice, Severity};
@@ -8,7 +8,8 @@ use crate::app::{Notice, Severity};
 /// Cards that are shown at once; older ones wait.
 const MOST: usize = 4;
 
-pub(super) fn show(ctx: &Context, desk: &mut Desk<'_>) {
+/// Draws over the picture in `canvas`, above the words in its lower left corner.
+pub(super) fn show(ctx: &Context, desk: &mut Desk<'_>, canvas: Rect) {
     let now = ctx.input(|input| input.time);
     desk.shown.notices.retain_mut(|notice| {
         let since = *notice.since.get_or_insert(now);
@@ -18,14 +19,14 @@ pub(super) fn show(ctx: &Context, desk: &mut Desk<'_>) {
     if lives.is_some() {
         ctx.request_repaint_after_secs(0.25);
     }
-    Area::new(Id::new("messages")).order(Order::Middle).anchor(Align2::CENTER_TOP, [0.0, 34.0]).show(
-        ctx,
-        |ui| {
-            ui.set_max_width(560.0);
-            progress(ui, desk);
-            cards(ui, desk);
-        },
-    );
+    let corner = canvas.left_bottom() + vec2(10.0, -44.0);
+    let width = (canvas.width() - 20.0).clamp(120.0, 480.0);
+    let area = Area::new(Id::new("messages")).order(Order::Middle).constrain(false);
+    area.pivot(Align2::LEFT_BOTTOM).fixed_pos(corner).show(ctx, |ui| {
+        ui.set_max_width(width);
+        cards(ui, desk);
+        progress(ui, desk);
+    });
 }
 
 /// Seconds that a message stays; errors stay until they are dismissed.
@@ -88,9 +89,8 @@ fn cards(ui: &mut Ui, desk: &mut Desk<'_>) {
         frame(ui, color).show(ui, |ui| {
             ui.horizontal(|ui| {
                 look::dot(ui, Some(color), "");
-                let width = 500.0;
                 ui.scope(|ui| {
-                    ui.set_max_width(width);
+                    ui.set_max_width(ui.available_width() - 26.0); // beside the button
                     ui.add(
                         egui::Label::new(RichText::new(&notice.text).color(Color32::from_gray(222))).wrap(),
                     );

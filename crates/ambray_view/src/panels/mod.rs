@@ -20,7 +20,7 @@ pub(crate) use bottom::duration;
 use settings::became;
 
 use action::Action;
-use egui::{Panel, Ui};
+use egui::{Panel, Ui, UiBuilder};
 
 use crate::{app::Shown, memory::Memory, model::Model};
 use dialogs::Dialogs;
@@ -33,6 +33,16 @@ pub struct Panels {
     dialogs: Dialogs,
     is_help_open: bool,
     is_styled: bool,
+}
+
+/// The least and the largest width of the settings, points.
+const SETTINGS_WIDTHS: (f32, f32) = (260.0, 560.0);
+
+/// Draws the content of a panel without letting it make the panel wider.
+fn contained(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
+    let place = ui.available_rect_before_wrap();
+    add(&mut ui.new_child(UiBuilder::new().max_rect(place)));
+    ui.advance_cursor_after_rect(place);
 }
 
 /// What lies before the panels in one frame.
@@ -78,17 +88,24 @@ impl Panels {
         if desk.memory.panels.timeline {
             Panel::bottom("timeline").show(ui, |ui| bottom::show(ui, &mut desk));
         }
-        if desk.memory.panels.settings {
-            let panel = Panel::left("settings").default_size(348.0).size_range(300.0..=560.0);
-            panel.show(ui, |ui| settings::show(ui, &mut desk, &mut self.search));
-        }
+        // The picture keeps half of the window.
+        let half = 0.5 * ui.available_width();
         if desk.memory.panels.facts {
-            let panel = Panel::right("facts").default_size(296.0).size_range(240.0..=520.0);
-            panel.show(ui, |ui| facts::show(ui, &mut desk));
+            let widest = (half - SETTINGS_WIDTHS.0).clamp(240.0, 520.0);
+            let panel = Panel::right("facts").default_size(280.0_f32.min(widest)).size_range(240.0..=widest);
+            panel.show(ui, |ui| contained(ui, |ui| facts::show(ui, &mut desk)));
         }
+        if desk.memory.panels.settings {
+            let (least, most) = SETTINGS_WIDTHS;
+            let widest = (ui.available_width() - half).clamp(least, most);
+            let panel =
+                Panel::left("settings").default_size(330.0_f32.min(widest)).size_range(least..=widest);
+            panel.show(ui, |ui| contained(ui, |ui| settings::show(ui, &mut desk, &mut self.search)));
+        }
+        let canvas = ui.available_rect_before_wrap();
         help::show(ui.ctx(), &mut self.is_help_open);
         self.dialogs.show(ui.ctx(), &mut desk);
-        messages::show(ui.ctx(), &mut desk);
+        messages::show(ui.ctx(), &mut desk, canvas);
         drop_hint::show(ui.ctx());
         Wishes { actions: desk.actions, is_dragging: desk.is_dragging }
     }

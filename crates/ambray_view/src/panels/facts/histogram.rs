@@ -1,6 +1,6 @@
 //! A histogram of up to three channels, with two ends to drag.
 
-use egui::{Color32, CornerRadius, Rect, Sense, Stroke, Ui, pos2, vec2};
+use egui::{Color32, CornerRadius, Mesh, Rect, Sense, Stroke, Ui, emath::GuiRounding as _, pos2, vec2};
 
 use crate::{engine::Statistics, panels::look};
 
@@ -34,15 +34,7 @@ pub(super) fn show(ui: &mut Ui, statistics: &Statistics, is_log: bool, handles: 
     let height = |n: u32| if is_log { f32::ln_1p(n as f32) } else { n as f32 };
     let top = statistics.histogram.iter().flatten().map(|&n| height(n)).fold(1.0, f32::max);
     for (bins, color) in statistics.histogram.iter().zip(colors) {
-        let width = rect.width() / bins.len().max(1) as f32;
-        for (i, &n) in bins.iter().enumerate().filter(|(_, n)| **n > 0) {
-            let left = rect.left() + i as f32 * width;
-            let bar = Rect::from_min_max(
-                pos2(left, rect.bottom() - rect.height() * height(n) / top),
-                pos2(left + width.max(1.0), rect.bottom()),
-            );
-            ui.painter().rect_filled(bar, 0.0, color.gamma_multiply(0.55));
-        }
+        fill(ui, rect, bins, color.gamma_multiply(0.55), |n| height(n) / top);
     }
     let Statistics { low, high, .. } = *statistics;
     if let Some(at) = response.hover_pos() {
@@ -50,6 +42,33 @@ pub(super) fn show(ui: &mut Ui, statistics: &Statistics, is_log: bool, handles: 
         response.on_hover_text_at_pointer(format!("{value:.5}"));
     }
     handles.map_or_else(Shown::default, |handles| drag(ui, rect, (low, high), handles))
+}
+
+/// Fills the columns of pixels in `rect` to the share that `height` gives to the largest of the bins in each.
+fn fill(ui: &Ui, rect: Rect, bins: &[u32], color: Color32, height: impl Fn(u32) -> f32) {
+    let pixel = 1.0 / ui.ctx().pixels_per_point();
+    let columns = (rect.width() / pixel).floor().max(1.0) as usize;
+    let left = rect.left().round_to_pixels(ui.ctx().pixels_per_point());
+    // A mesh is not smoothed at its edges: columns of whole pixels have no seams.
+    let mut mesh = Mesh::default();
+    for column in 0..columns {
+        let Some(largest) = bins_of(column, columns, bins.len()).filter_map(|bin| bins.get(bin)).max() else {
+            continue;
+        };
+        let x = left + column as f32 * pixel;
+        let bar = Rect::from_min_max(
+            pos2(x, rect.bottom() - rect.height() * height(*largest)),
+            pos2(x + pixel, rect.bottom()),
+        );
+        mesh.add_colored_rect(bar, color);
+    }
+    ui.painter().add(mesh);
+}
+
+/// The bins that a column shows: at least one, and each bin is in some column.
+fn bins_of(column: usize, columns: usize, bins: usize) -> std::ops::Range<usize> {
+    let first = column * bins / columns;
+    first..((column + 1) * bins / columns).max(first + 1)
 }
 
 fn drag(ui: &Ui, rect: Rect, (low, high): (f32, f32), handles: Handles) -> Shown {

@@ -4,7 +4,7 @@ use ambray::{
     AovKind,
     settings::{Auto, Range},
 };
-use egui::{Grid, RichText, Slider, Ui};
+use egui::{RichText, Slider, Ui};
 
 use super::histogram::{self, Handles};
 use crate::{
@@ -44,18 +44,16 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     {
         desk.model.edited_mut().range = Auto::Value(Range([low, high]));
     }
-    Grid::new("values").num_columns(2).spacing([10.0, 2.0]).show(ui, |ui| {
-        look::fact(ui, "least, largest", format!("{:.5}, {:.5}", statistics.low, statistics.high));
-        let means: Vec<_> = statistics.mean.iter().map(|mean| format!("{mean:.5}")).collect();
-        look::fact(ui, "mean", means.join(", "));
-    });
+    look::fact(ui, "least, largest", format!("{:.5}, {:.5}", statistics.low, statistics.high));
+    let means: Vec<_> = statistics.mean.iter().map(|mean| format!("{mean:.5}")).collect();
+    look::fact(ui, "mean", means.join(", "));
     if is_scalar {
         ui.horizontal(|ui| {
-            ui.weak("Drag the ends to set the range");
             let is_set = desk.model.edited().range != Auto::Auto;
             if ui.add_enabled(is_set, egui::Button::new("auto range")).clicked() {
                 desk.model.edited_mut().range = Auto::Auto;
             }
+            ui.add(egui::Label::new(RichText::new("drag the ends to set it").weak()).truncate());
         });
     }
     exposure(ui, desk);
@@ -86,10 +84,8 @@ fn difference(ui: &mut Ui, desk: &Desk<'_>) {
         ui.weak("The difference follows when both pictures are there");
         return;
     };
-    Grid::new("difference").num_columns(2).spacing([10.0, 2.0]).show(ui, |ui| {
-        look::fact(ui, "RMSE", format!("{:.6}", difference.rmse));
-        look::fact(ui, "bias A \u{2212} B", format!("{:+.6}", difference.bias));
-        look::fact(ui, "largest", format!("{:.6}", difference.largest));
-    });
+    look::fact(ui, "RMSE", format!("{:.6}", difference.rmse));
+    look::fact(ui, "bias A \u{2212} B", format!("{:+.6}", difference.bias));
+    look::fact(ui, "largest", format!("{:.6}", difference.largest));
     ui.separator();
 }

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use ambray::{Machine, StageTimes};
-use egui::{Grid, RichText, Ui};
+use egui::{RichText, Ui};
 use egui_plot::{Bar, BarChart, Plot};
 
 use crate::{
@@ -67,35 +67,32 @@ fn plot(ui: &mut Ui, desk: &Desk<'_>) {
 
 fn numbers(ui: &mut Ui, timing: &Timing) {
     let stats = &timing.stats;
-    Grid::new("stages").num_columns(4).spacing([10.0, 2.0]).show(ui, |ui| {
-        let (times, rays) = (stages(&stats.times), stats.rays);
-        let rays = [
-            ("primary", rays.primary),
-            ("ambient", rays.ambient),
-            ("chords", rays.chord),
-            ("shadow", rays.shadow),
-            ("all rays", rays.total()),
-        ];
-        let seconds = stats.times.total.as_secs_f64().max(1e-9);
-        for i in 0..NAMES.len() {
-            ui.label(RichText::new(NAMES[i]).color(look::STAGES[i]));
-            ui.label(RichText::new(format!("{:>8.2} ms", times[i])).monospace());
-            if let Some((name, count)) = rays.get(i) {
-                ui.label(RichText::new(*name).weak());
-                ui.label(RichText::new(format!("{:>8}", look::count(*count))).monospace());
-            } else {
-                ui.label(RichText::new("speed").weak());
-                let speed = stats.rays.total() as f64 / seconds / 1e6;
-                ui.label(RichText::new(format!("{speed:>6.1} Mrays/s")).monospace());
-            }
-            ui.end_row();
-        }
-        ui.label(RichText::new("all").strong());
-        ui.label(RichText::new(format!("{:>8.2} ms", ms(stats.times.total))).monospace().strong());
-        ui.label(RichText::new("threads").weak());
-        ui.label(RichText::new(format!("{:>8}", stats.threads)).monospace());
-        ui.end_row();
-    });
+    let rays = stats.rays;
+    let seconds = stats.times.total.as_secs_f64().max(1e-9);
+    let of_type = |name, count| Some((RichText::new(name).weak(), look::count(count)));
+    let beside = [
+        of_type("primary", rays.primary),
+        of_type("ambient", rays.ambient),
+        of_type("chords", rays.chord),
+        of_type("shadow", rays.shadow),
+        of_type("all rays", rays.total()),
+        Some((RichText::new("Mrays/s").weak(), format!("{:.1}", rays.total() as f64 / seconds / 1e6))),
+    ];
+    for ((name, time), (beside, color)) in
+        NAMES.iter().zip(stages(&stats.times)).zip(beside.into_iter().zip(look::STAGES))
+    {
+        look::columns(ui, [Some((RichText::new(*name).color(color), milliseconds(time))), beside]);
+    }
+    let all = (RichText::new("all").strong(), milliseconds(ms(stats.times.total)));
+    // A device has no threads that could be counted.
+    let threads = (stats.threads > 0).then(|| (RichText::new("threads").weak(), stats.threads.to_string()));
+    look::columns(ui, [Some(all), threads]);
+}
+
+/// A time with as many digits as are worth reading.
+fn milliseconds(time: f64) -> String {
+    let decimals = if time < 100.0 { 2 } else { 0 };
+    format!("{time:.decimals$} ms")
 }
 
 /// How far the pictures of the sides are refined.
@@ -117,17 +114,15 @@ fn level(ui: &mut Ui, desk: &Desk<'_>) {
 
 fn machine(ui: &mut Ui, desk: &Desk<'_>) {
     let Some(opened) = &desk.shown.opened else { return };
-    Grid::new("machine").num_columns(2).spacing([10.0, 2.0]).show(ui, |ui| {
-        match &opened.machine {
-            Machine::Cpu { isa, .. } => look::fact(ui, "machine", format!("processor, {isa}")),
-            Machine::Vulkan { device, trace } => {
-                look::fact(ui, "machine", device);
-                look::fact(ui, "rays", format!("{trace:?}").to_lowercase());
-            }
+    match &opened.machine {
+        Machine::Cpu { isa, .. } => look::fact(ui, "machine", format!("processor, {isa}")),
+        Machine::Vulkan { device, trace } => {
+            look::fact(ui, "machine", device);
+            look::fact(ui, "rays", format!("{trace:?}").to_lowercase());
         }
-        look::fact(ui, "trees", look::bytes(opened.build.acceleration_bytes));
-        look::fact(ui, "planes", look::bytes(planes(desk)));
-    });
+    }
+    look::fact(ui, "trees", look::bytes(opened.build.acceleration_bytes));
+    look::fact(ui, "planes", look::bytes(planes(desk)));
     if let Machine::Cpu { reason: Some(reason), .. } = &opened.machine {
         ui.add(egui::Label::new(RichText::new(format!("No device: {reason}")).weak().small()).wrap());
     }

@@ -3,7 +3,10 @@
 use ambray::settings::{Field, Kind};
 use egui::{Color32, DragValue, Id, Response, Slider, SliderClamping, TextEdit, Ui};
 
-use super::scale::{self, Extent, Scale};
+use super::{
+    places::{self, PART_GAP, PATCH},
+    scale::{self, Extent, Scale},
+};
 
 /// A setting that is being edited.
 #[derive(Debug)]
@@ -94,7 +97,8 @@ impl Editor<'_> {
     fn choice(&self, ui: &mut Ui, choices: &[(&str, &str)]) -> Edit {
         let mut chosen = None;
         let combo = egui::ComboBox::from_id_salt(self.field.name)
-            .width(ui.available_width() - ui.spacing().item_spacing.x)
+            .width(ui.available_width())
+            .truncate()
             .selected_text(self.text)
             .show_ui(ui, |ui| {
                 for (name, meaning) in choices {
@@ -114,14 +118,19 @@ impl Editor<'_> {
             self.text.split(separator).map(|part| part.parse().unwrap_or_default()).collect();
         parts.resize(count, 0.0);
         let mut edit = Edit::default();
-        let gaps = ui.spacing().item_spacing.x * count as f32;
-        let width = (ui.available_width() - gaps) / count as f32;
         let mut is_changed = false;
         let whole = self.field.kind == Kind::Size;
-        for part in &mut parts {
-            let drag = DragValue::new(part).speed(speed).max_decimals(if whole { 0 } else { 4 });
+        ui.spacing_mut().button_padding.x = 3.0;
+        for (part, place) in parts.iter_mut().zip(places::beside(ui.available_rect_before_wrap(), count)) {
+            ui.spacing_mut().interact_size.x = place.width();
+            let decimals = match place.width() {
+                _ if whole => 0,
+                ..44.0 => 2,
+                _ => 4,
+            };
+            let drag = DragValue::new(part).speed(speed).max_decimals(decimals);
             let drag = if whole { drag.range(1.0..=32_768.0) } else { drag };
-            let response = ui.add_sized([width, ui.spacing().interact_size.y], drag).labelled_by(self.label);
+            let response = ui.put(place, drag).labelled_by(self.label);
             is_changed |= response.changed();
             edit.is_dragged |= response.dragged();
         }
@@ -140,7 +149,8 @@ impl Editor<'_> {
             *channel = part.parse().unwrap_or_default();
         }
         let before = rgb;
-        ui.spacing_mut().interact_size.x = 26.0;
+        ui.spacing_mut().interact_size.x = PATCH;
+        ui.spacing_mut().item_spacing.x = PART_GAP;
         let patch = ui.color_edit_button_rgb(&mut rgb).on_hover_text("linear light");
         if patch.changed() && rgb != before {
             let words: Vec<_> = rgb.iter().map(|v| v.max(0.0).to_string()).collect();
@@ -169,8 +179,9 @@ fn full_row(ui: &Ui) -> [f32; 2] {
 
 /// A slider as wide as the row, with its number in a column of its own.
 fn slider(ui: &mut Ui, slider: Slider<'_>) -> Response {
-    const NUMBER: f32 = 66.0;
-    ui.spacing_mut().interact_size.x = NUMBER;
-    ui.spacing_mut().slider_width = (ui.available_width() - NUMBER - ui.spacing().item_spacing.x).max(40.0);
+    let number = if ui.available_width() < 140.0 { 54.0 } else { 66.0 };
+    ui.spacing_mut().interact_size.x = number;
+    ui.spacing_mut().button_padding.x = 4.0;
+    ui.spacing_mut().slider_width = (ui.available_width() - number - ui.spacing().item_spacing.x).max(24.0);
     ui.add(slider.clamping(SliderClamping::Never))
 }

@@ -4,7 +4,10 @@ use ambray::settings::{Preset, Settings};
 use egui::{RichText, TextEdit, Ui};
 
 use super::{reset, side_mark};
-use crate::{model::Side, panels::Desk};
+use crate::{
+    model::{Model, Side},
+    panels::Desk,
+};
 
 /// The presets of the program, with what they are.
 const PRESETS: [(Preset, &str, &str); 3] = [
@@ -34,14 +37,15 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>, search: &mut String) {
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             if ui.button("Reset all").on_hover_text("Every setting but the camera and the size").clicked() {
-                reset_all(desk.model.edited_mut());
+                reset_all(desk.model);
             }
             ui.menu_button("Presets", |ui| presets(ui, desk));
         });
     });
     ui.horizontal(|ui| {
         let width = ui.available_width() - if search.is_empty() { 0.0 } else { 26.0 };
-        let field = TextEdit::singleline(search).hint_text("Search settings").desired_width(width);
+        let margin = 8.0; // of the field itself
+        let field = TextEdit::singleline(search).hint_text("Search settings").desired_width(width - margin);
         let response = ui.add(field);
         response
             .widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, true, "search settings"));
@@ -53,11 +57,11 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>, search: &mut String) {
 }
 
 /// Gives all settings their defaults, apart from where the camera is, when it is, and how large the picture is.
-fn reset_all(settings: &mut Settings) {
+fn reset_all(model: &mut Model) {
     let kept = ["size", "time"];
     for field in Settings::fields() {
         if field.heading != "Camera" && !kept.contains(&field.name) {
-            reset(settings, field);
+            reset(model, field);
         }
     }
 }

@@ -3,6 +3,7 @@
 pub(crate) mod became;
 mod editor;
 mod header;
+mod places;
 mod row;
 pub(crate) mod scale;
 
@@ -10,7 +11,7 @@ use ambray::settings::{Field, Settings, SettingsError};
 use egui::{CollapsingHeader, RichText, ScrollArea, Ui, pos2, vec2};
 
 use super::{Desk, look};
-use crate::model::{Comparison, Side};
+use crate::model::{Comparison, Model, Resolution, Side};
 use row::Row;
 use scale::Extent;
 
@@ -46,7 +47,7 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>, search: &mut String) {
 /// Why the edited side cannot be rendered, apart from values that are shown beside their settings.
 fn refusals(ui: &mut Ui, desk: &Desk<'_>) {
     for message in &desk.shown.refused[desk.model.editing as usize] {
-        ui.colored_label(look::ERROR, message);
+        ui.add(egui::Label::new(RichText::new(message).color(look::ERROR)).wrap());
     }
 }
 
@@ -72,10 +73,8 @@ fn show_group(ui: &mut Ui, desk: &mut Desk<'_>, context: &Context, group: &'stat
     if found.is_empty() {
         return;
     }
-    let changed: Vec<_> = group
-        .iter()
-        .filter(|field| desk.model.edited().get(field.name) != context.defaults.get(field.name))
-        .collect();
+    let changed: Vec<_> =
+        group.iter().filter(|field| is_changed(desk.model, &context.defaults, field)).collect();
     let is_searching = !context.search.is_empty();
     let is_open = is_searching || desk.memory.panels.open_groups.contains(heading);
     let title = RichText::new(heading).strong();
@@ -107,16 +106,26 @@ fn reset_of_group(ui: &mut Ui, desk: &mut Desk<'_>, heading: &str, changed: &[&F
     let tip = format!("Changed: {}.\nClick to reset the group.", names.join(", "));
     if response.on_hover_text(tip).clicked() {
         for field in changed {
-            reset(desk.model.edited_mut(), field);
+            reset(desk.model, field);
         }
     }
 }
 
-/// Gives a setting its default.
-pub(super) fn reset(settings: &mut Settings, field: &Field) {
-    if let Some(default) = Settings::default().get(field.name) {
+/// Whether a setting of the edited side is not as it is by itself; the size is by itself that of the window.
+pub(super) fn is_changed(model: &Model, defaults: &Settings, field: &Field) -> bool {
+    match field.name {
+        "size" => matches!(model.resolution, Resolution::Fixed(_)),
+        name => model.edited().get(name) != defaults.get(name),
+    }
+}
+
+/// Gives a setting of the edited side its default.
+pub(super) fn reset(model: &mut Model, field: &Field) {
+    if field.name == "size" {
+        model.resolution = Resolution::Window(1.0);
+    } else if let Some(default) = Settings::default().get(field.name) {
         // The spelling of a value is always read.
-        let _ = settings.set(field.name, &default);
+        let _ = model.edited_mut().set(field.name, &default);
     }
 }
 

@@ -1,11 +1,13 @@
 //! One setting: dot, name, editor, `auto`.
 
 use ambray::settings::{Field, Kind};
-use egui::{Color32, Label, RichText, Sense, Ui, vec2};
+use egui::{Color32, Label, RichText, Sense, Ui};
 
 use super::{
     Context, became,
     editor::{Edit, Editor},
+    is_changed,
+    places::{self, Places},
     reset,
     scale::Extent,
     side_mark, title,
@@ -75,8 +77,7 @@ impl Row {
 
     pub(super) fn show(&self, ui: &mut Ui, desk: &mut Desk<'_>, context: &Context) {
         let field = self.field;
-        let edit =
-            ui.push_id(field.name, |ui| ui.horizontal(|ui| self.widgets(ui, desk, context)).inner).inner;
+        let edit = ui.push_id(field.name, |ui| self.widgets(ui, desk, context)).inner;
         desk.is_dragging |= edit.is_dragged;
         if let Some(text) = edit.text {
             // What cannot be read is no value yet: the old one stays.
@@ -96,31 +97,39 @@ impl Row {
 
     fn widgets(&self, ui: &mut Ui, desk: &mut Desk<'_>, context: &Context) -> Edit {
         let field = self.field;
+        let places = Places::of(ui.available_width(), ui.spacing().interact_size.y, field.kind);
+        let (_, row) = ui.allocate_space(places.row.size());
+        let places = places.at(row.min);
         let default = context.defaults.get(field.name).unwrap_or_default();
-        let is_changed = self.text != default;
         let name = title(field);
-        let dot = look::dot(ui, is_changed.then_some(look::ACCENT), &format!("reset {name}"));
-        if is_changed && dot.on_hover_text(format!("Changed from {default}. Click to reset.")).clicked() {
-            reset(desk.model.edited_mut(), field);
-        }
-        let label = self.label(ui, desk, &name, &default);
-        let auto_width = if self.has_auto() { 46.0 } else { 0.0 };
+        look::inside(ui, places.dot, |ui| self.dot(ui, desk, context, &name, &default));
+        let label = look::inside(ui, places.name, |ui| self.label(ui, desk, &name, &default));
         let (text, is_auto) = (if self.is_auto() { self.start() } else { self.text.clone() }, self.is_auto());
         let editor = Editor { field, text: &text, extent: self.extent, names: &self.names, label };
-        let size = vec2(ui.available_width() - auto_width, ui.spacing().interact_size.y);
-        let layout = egui::Layout::left_to_right(egui::Align::Center);
-        let mut edit = ui
-            .allocate_ui_with_layout(size, layout, |ui| {
-                if is_auto {
-                    ui.visuals_mut().override_text_color = Some(Color32::from_gray(128));
-                }
-                editor.show(ui)
-            })
-            .inner;
-        if self.has_auto() {
-            edit.text = self.auto(ui, &name).or(edit.text);
+        let mut edit = look::inside(ui, places.editor, |ui| {
+            if is_auto {
+                ui.visuals_mut().override_text_color = Some(Color32::from_gray(128));
+            }
+            editor.show(ui)
+        });
+        if let Some(place) = places.auto {
+            let word = if places::says_auto(row.width()) { "auto" } else { "" };
+            edit.text = look::inside(ui, place, |ui| self.auto(ui, &name, word)).or(edit.text);
         }
         edit
+    }
+
+    /// The dot of a changed setting, that resets it.
+    fn dot(&self, ui: &mut Ui, desk: &mut Desk<'_>, context: &Context, name: &str, default: &str) {
+        let is_changed = is_changed(desk.model, &context.defaults, self.field);
+        let dot = look::dot(ui, is_changed.then_some(look::ACCENT), &format!("reset {name}"));
+        if !is_changed {
+            return;
+        }
+        let before = if self.field.name == "size" { "that of the window" } else { default };
+        if dot.on_hover_text(format!("Changed from {before}. Click to reset.")).clicked() {
+            reset(desk.model, self.field);
+        }
     }
 
     fn label(&self, ui: &mut Ui, desk: &Desk<'_>, name: &str, default: &str) -> egui::Id {
@@ -130,13 +139,8 @@ impl Row {
         {
             text = text.color(color);
         }
-        let size = vec2(look::NAME_WIDTH, ui.spacing().interact_size.y);
-        let layout = egui::Layout::left_to_right(egui::Align::Center);
-        let label = ui.allocate_ui_with_layout(size, layout, |ui| {
-            ui.set_min_width(look::NAME_WIDTH);
-            ui.add(Label::new(text).truncate().selectable(false).sense(Sense::hover()))
-        });
-        label.inner.on_hover_ui(|ui| self.tooltip(ui, default)).id
+        let label = Label::new(text).truncate().show_tooltip_when_elided(false).selectable(false);
+        ui.add(label.sense(Sense::hover())).on_hover_ui(|ui| self.tooltip(ui, default)).id
     }
 
     fn tooltip(&self, ui: &mut Ui, default: &str) {
@@ -156,11 +160,11 @@ impl Row {
         );
     }
 
-    fn auto(&self, ui: &mut Ui, name: &str) -> Option<String> {
+    fn auto(&self, ui: &mut Ui, name: &str, word: &str) -> Option<String> {
         let mut is_auto = self.is_auto();
-        let response = ui.checkbox(&mut is_auto, "auto").on_hover_text(match &self.became {
-            Some(became) => format!("Chosen from the scene: {became}"),
-            None => "Chosen from the scene".to_owned(),
+        let response = ui.checkbox(&mut is_auto, word).on_hover_text(match &self.became {
+            Some(became) => format!("auto: chosen from the scene, {became}"),
+            None => "auto: chosen from the scene".to_owned(),
         });
         response.widget_info(|| {
             egui::WidgetInfo::selected(egui::WidgetType::Checkbox, true, is_auto, format!("{name} auto"))
