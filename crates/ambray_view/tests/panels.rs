@@ -6,6 +6,7 @@ use ambray::settings::{Auto, Kind, Settings, Thin, Window};
 use ambray_view::{
     app::Severity,
     model::{Comparison, SceneRef, Side},
+    panels::action::{Action, Question},
 };
 use desk::{Desk, Dropped};
 use egui::{Key, Modifiers, accesskit::Role};
@@ -92,15 +93,17 @@ fn each_side_is_edited_by_itself_and_a_comparison_that_ends_goes_back_to_a() {
     desk.open_all_groups();
     desk.click("A | B");
     assert_eq!(desk.app().model.comparison, Comparison::Split);
-    desk.click("B");
+    desk.click("edit side B");
     assert_eq!(desk.app().model.editing, Side::B);
     desk.click("lights");
     let [a, b] = &desk.app().model.settings;
     assert_eq!((a.lights, b.lights), (true, false));
+    desk.click("edit side A");
+    assert_eq!(desk.app().model.editing, Side::A);
+    desk.click("edit side B");
     desk.click("A");
-    desk.step(1);
     let model = &desk.app().model;
-    assert!(model.editing == Side::A || model.comparison == Comparison::Off);
+    assert_eq!((model.editing, model.comparison), (Side::A, Comparison::Off));
 }
 
 #[test]
@@ -200,7 +203,7 @@ fn settings_are_saved_and_dropped_back() {
     desk.app_mut().set("thin", "paper").unwrap();
     desk.app_mut().set("camera-position", "1,2,-3.5").unwrap();
     let saved = desk.settings().clone();
-    desk.perform(ambray_view::panels::action::Action::SaveSettings(path.clone()));
+    desk.perform(Action::SaveSettings(path.clone()));
     desk.until(|app| app.shown.notices.iter().any(|notice| notice.text.contains("is written")));
     desk.app_mut().set("thin", "off").unwrap();
     desk.app_mut().set("camera-position", "auto").unwrap();
@@ -295,6 +298,42 @@ fn panels_are_hidden_and_shown_by_a_key() {
     desk.harness.key_press(Key::Tab);
     desk.step(3);
     desk.harness.get_by_label("Reset all");
+}
+
+#[test]
+fn editors_fit_their_panel_and_the_picture_keeps_half_of_the_window() {
+    let mut desk = Desk::new();
+    desk.wait();
+    for (width, height) in [(1600.0, 1000.0), (1000.0, 640.0), (1000.0, 2400.0)] {
+        desk.harness.set_size(egui::vec2(width, height));
+        desk.open_all_groups();
+        let picture = desk.harness.get_by_label("picture").rect();
+        // But for the margin that the test kit leaves around everything.
+        assert!(picture.width() >= 0.5 * width - 16.0, "{picture:?} of {width}");
+        for field in Settings::fields() {
+            let name = field.name.replace('-', " ");
+            for node in desk.harness.query_all_by_label(&name) {
+                let editor = node.rect();
+                let fits = editor.right() <= picture.left() || editor.left() >= picture.right();
+                assert!(fits, "{name} at {width}: {editor:?} reaches into {picture:?}");
+            }
+        }
+        desk.step(10);
+        assert_eq!(desk.harness.get_by_label("picture").rect(), picture, "the panels grow");
+    }
+}
+
+#[test]
+fn a_turntable_that_is_being_planned_is_not_begun_anew() {
+    let mut desk = Desk::new();
+    let ask = Action::Ask(Question::Turntable { frames: 120, fps: 30.0 });
+    for _ in 0..2 {
+        desk.perform(ask.clone());
+        desk.harness.get_by_label("Choose where\u{2026}");
+        desk.harness.get_by_label("frames of the turn");
+    }
+    desk.click("Cancel");
+    assert!(desk.harness.query_by_label("frames of the turn").is_none());
 }
 
 #[test]

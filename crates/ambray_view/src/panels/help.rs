@@ -8,7 +8,7 @@ use crate::canvas::ACTIONS;
 /// Width of a table, points.
 const TABLE: f32 = 380.0;
 /// Width of the keys in it, points.
-const KEYS: f32 = 138.0;
+const KEYS: f32 = 142.0;
 
 pub(super) fn show(ctx: &Context, is_open: &mut bool) {
     let room = 0.9 * ctx.content_rect().size();
@@ -16,11 +16,11 @@ pub(super) fn show(ctx: &Context, is_open: &mut bool) {
     let is_wide = room.x > 2.0 * TABLE + 60.0;
     let width = if is_wide { 2.0 * TABLE + 24.0 } else { TABLE.min(room.x - 40.0) };
     let window = Window::new("Keys and mouse").open(is_open).collapsible(false).resizable(false);
-    let window = window.pivot(Align2::CENTER_CENTER).default_pos(ctx.content_rect().center());
-    window.show(ctx, |ui| {
+    window.anchor(Align2::CENTER_CENTER, [0.0, 0.0]).show(ctx, |ui| {
         ui.set_width(width);
-        let area = ScrollArea::vertical().max_height(room.y - 60.0).auto_shrink([false, true]);
-        area.show(ui, |ui| {
+        let height = room.y - 60.0;
+        let area = ScrollArea::vertical().max_height(height).min_scrolled_height(height);
+        area.auto_shrink([false, true]).show(ui, |ui| {
             if is_wide {
                 ui.columns(2, |columns| {
                     shortcuts(&mut columns[0]);
@@ -44,7 +44,7 @@ fn actions(ui: &mut Ui) {
 }
 
 fn table(ui: &mut Ui, title: &str, rows: impl Iterator<Item = (&'static str, &'static str)>) {
-    ui.label(RichText::new(title).strong());
+    ui.label(RichText::new(title).heading());
     for (keys, meaning) in rows {
         ui.horizontal_top(|ui| {
             look::cell(ui, KEYS, |ui| ui.add(Label::new(RichText::new(keys).monospace()).wrap()));

@@ -19,8 +19,9 @@ pub(super) fn show(ctx: &Context, desk: &mut Desk<'_>, canvas: Rect) {
     if lives.is_some() {
         ctx.request_repaint_after_secs(0.25);
     }
-    let corner = canvas.left_bottom() + vec2(10.0, -44.0);
-    let width = (canvas.width() - 20.0).clamp(120.0, 480.0);
+    let corner = canvas.left_bottom() + vec2(10.0, -40.0);
+    // Beside the axes in the other corner.
+    let width = (canvas.width() - 110.0).clamp(120.0, 480.0);
     let area = Area::new(Id::new("messages")).order(Order::Middle).constrain(false);
     area.pivot(Align2::LEFT_BOTTOM).fixed_pos(corner).show(ctx, |ui| {
         ui.set_max_width(width);

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use ambray::{Machine, StageTimes};
 use egui::{RichText, Ui};
-use egui_plot::{Bar, BarChart, Plot};
+use egui_plot::{Bar, BarChart, GridMark, Plot};
 
 use crate::{
     app::{TIMINGS, Timing},
@@ -38,9 +38,13 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
 
 fn plot(ui: &mut Ui, desk: &Desk<'_>) {
     let mut charts: Vec<BarChart> = Vec::new();
+    let timings = &desk.shown.timings;
+    // As many as there are, so that the first ones can be seen, too.
+    let places = timings.len().clamp(24, TIMINGS);
+    let highest = timings.iter().map(|timing| stages(&timing.stats.times).iter().sum()).fold(1e-3, f64::max);
     for (i, name) in NAMES.iter().enumerate() {
-        let first = (TIMINGS - desk.shown.timings.len().min(TIMINGS)) as f64;
-        let bars = desk.shown.timings.iter().enumerate().map(|(at, timing)| {
+        let first = (places - timings.len().min(places)) as f64 + 0.5;
+        let bars = timings.iter().enumerate().map(|(at, timing)| {
             Bar::new(first + at as f64, stages(&timing.stats.times)[i]).width(1.0).stroke(egui::Stroke::NONE)
         });
         let chart = BarChart::new(*name, bars.collect()).color(look::STAGES[i]).allow_hover(false);
@@ -51,9 +55,12 @@ fn plot(ui: &mut Ui, desk: &Desk<'_>) {
     Plot::new("frame times")
         .height(96.0)
         .include_x(0.0)
-        .include_x(TIMINGS as f64)
+        .include_x(places as f64)
         .include_y(0.0)
+        .include_y(highest)
         .show_x(false)
+        .show_grid([false, true])
+        .y_grid_spacer(move |_| marks(highest))
         .show_axes([false, true])
         .y_axis_formatter(|mark, _| format!("{} ms", mark.value))
         .y_axis_min_width(40.0)
@@ -63,6 +70,14 @@ fn plot(ui: &mut Ui, desk: &Desk<'_>) {
         .allow_boxed_zoom(false)
         .allow_axis_zoom_drag(false)
         .show(ui, |plot| charts.into_iter().for_each(|chart| plot.bar_chart(chart)));
+}
+
+/// Marks at one or two round values below the top.
+fn marks(highest: f64) -> Vec<GridMark> {
+    let decade = 10f64.powf(highest.log10().floor());
+    let step = [5.0, 2.0, 1.0].into_iter().map(|n| n * decade).find(|step| *step <= highest);
+    let step = step.unwrap_or(decade);
+    (0..3).map(|i| GridMark { value: f64::from(i) * step, step_size: step }).collect()
 }
 
 fn numbers(ui: &mut Ui, timing: &Timing) {

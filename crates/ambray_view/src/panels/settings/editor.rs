@@ -91,6 +91,9 @@ impl Editor<'_> {
     fn flag(&self, ui: &mut Ui) -> Edit {
         let mut value = self.text == "true";
         let response = ui.checkbox(&mut value, "");
+        // A box without words would say that it has no name, whatever it is labelled by.
+        let name = super::title(self.field);
+        response.widget_info(|| egui::WidgetInfo::selected(egui::WidgetType::Checkbox, true, value, &name));
         Edit::of(&response.labelled_by(self.label), || value.to_string())
     }
 

@@ -30,7 +30,12 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>, search: &mut String) {
                 let text = RichText::new(format!("{side:?}")).strong();
                 let text = if is_edited { text.color(color) } else { text };
                 let tip = format!("Edit side {side:?}; settings that differ are coloured");
-                if ui.selectable_label(is_edited, text).on_hover_text(tip).clicked() {
+                let response = ui.selectable_label(is_edited, text).on_hover_text(tip);
+                response.widget_info(|| {
+                    let name = format!("edit side {side:?}");
+                    egui::WidgetInfo::selected(egui::WidgetType::SelectableLabel, true, is_edited, name)
+                });
+                if response.clicked() {
                     desk.model.editing = side;
                 }
             }
@@ -44,8 +49,7 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>, search: &mut String) {
     });
     ui.horizontal(|ui| {
         let width = ui.available_width() - if search.is_empty() { 0.0 } else { 26.0 };
-        let margin = 8.0; // of the field itself
-        let field = TextEdit::singleline(search).hint_text("Search settings").desired_width(width - margin);
+        let field = TextEdit::singleline(search).hint_text("Search settings").desired_width(width);
         let response = ui.add(field);
         response
             .widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, true, "search settings"));
