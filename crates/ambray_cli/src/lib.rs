@@ -32,8 +32,7 @@ where
     terminal::log_warnings();
     let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
     let outcome = match args::parse_from(&arguments) {
-        // A window is closed by Ctrl-C at once: there is nothing half done that it would have to finish.
-        Ok(command) => (if matches!(command, Command::View(_)) { Ok(()) } else { signals::install() })
+        Ok(command) => signals::install()
             .and_then(|()| dispatch(&command))
             // Devices are closed by now, which the layer may have had something to say about.
             .and_then(|()| terminal::check_validation()),

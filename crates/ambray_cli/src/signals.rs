@@ -2,7 +2,10 @@
 
 use std::{
     process,
-    sync::atomic::{AtomicBool, Ordering},
+    sync::{
+        Mutex, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
 };
 
 pub use ambray_files::Interrupted;
@@ -13,6 +16,8 @@ use crate::{failure::EXIT_INTERRUPTED, terminal};
 
 static CANCEL: AtomicBool = AtomicBool::new(false);
 static GRACEFUL: AtomicBool = AtomicBool::new(false);
+/// What is told of the first Ctrl-C besides.
+static LISTENER: Mutex<Option<Box<dyn Fn() + Send>>> = Mutex::new(None);
 
 /// Starts to listen for Ctrl-C and for requests to terminate.
 ///
@@ -22,6 +27,9 @@ pub fn install() -> anyhow::Result<()> {
         let first = !CANCEL.swap(true, Ordering::Relaxed);
         if !(first && GRACEFUL.load(Ordering::Relaxed)) {
             end_at_once();
+        }
+        if let Some(tell) = &*LISTENER.lock().unwrap_or_else(PoisonError::into_inner) {
+            tell();
         }
     })
     .context("signal handler")
@@ -55,10 +63,18 @@ impl Graceful {
         GRACEFUL.store(true, Ordering::Relaxed);
         Self(())
     }
+
+    /// Begins work that does not look at the flag, but is told by `tell`.
+    #[must_use]
+    pub fn telling(tell: impl Fn() + Send + 'static) -> Self {
+        *LISTENER.lock().unwrap_or_else(PoisonError::into_inner) = Some(Box::new(tell));
+        Self::begin()
+    }
 }
 
 impl Drop for Graceful {
     fn drop(&mut self) {
         GRACEFUL.store(false, Ordering::Relaxed);
+        *LISTENER.lock().unwrap_or_else(PoisonError::into_inner) = None;
     }
 }

@@ -16,7 +16,7 @@ pub struct Timeline {
 }
 
 impl Timeline {
-    /// A sequence that begins as `settings` say; only of a scene that `moves`, the time passes.
+    /// A sequence that begins as `settings` say; time passes only if something `moves`.
     #[must_use]
     pub const fn new(settings: Settings, rate: Rate, moves: bool) -> Self {
         Self { settings, rate, moves }
@@ -61,7 +61,9 @@ impl Timeline {
     /// stand alone.
     #[must_use]
     pub fn history(&self, frames: Frames) -> Option<String> {
-        self.accumulates().then(|| format!("accumulated from frame {} at {} fps", frames.start(), self.rate))
+        // Without movement it does not matter how fast they are.
+        let pace = if self.moves { format!(" at {} fps", self.rate) } else { String::new() };
+        self.accumulates().then(|| format!("accumulated from frame {}{pace}", frames.start()))
     }
 }
 
@@ -108,6 +110,8 @@ mod tests {
         let settings = Settings { frame: 7, temporal: Temporal::On, ..Settings::default() };
         let together = Timeline::new(settings, rate, true);
         assert_eq!(together.settings(5).frame, 12);
-        assert!(together.history(frames).is_some());
+        assert_eq!(together.history(frames).unwrap(), "accumulated from frame 0 at 25 fps");
+        let still = Timeline { moves: false, ..together };
+        assert_eq!(still.history(frames).unwrap(), "accumulated from frame 0");
     }
 }

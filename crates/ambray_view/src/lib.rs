@@ -15,4 +15,4 @@ pub mod model;
 pub mod panels;
 pub mod shell;
 
-pub use shell::{ViewOptions, run};
+pub use shell::{Stop, ViewOptions, run};

@@ -152,6 +152,8 @@ pub struct Model {
     pub playback: Playback,
     /// Whether the pixel inspector is open.
     pub is_inspecting: bool,
+    /// Whether words and lines are drawn over the picture; without them it can be seen byte for byte.
+    pub has_overlays: bool,
     /// Places to look from in this scene, by digit.
     pub bookmarks: BTreeMap<u8, Bookmark>,
     /// Whether the camera or a slider is being dragged: quick pictures are worth more than fine ones.
@@ -172,6 +174,7 @@ impl Model {
             resolution: Resolution::Window(1.0),
             playback: Playback::default(),
             is_inspecting: false,
+            has_overlays: true,
             bookmarks: BTreeMap::new(),
             is_moving: false,
         }

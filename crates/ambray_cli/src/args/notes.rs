@@ -45,7 +45,7 @@ Sequences:
   --frames 0..120 renders frames 0 to 119, 0..=120 also 120, 7 that one, 0..120:5 every fifth. Frame k shows the time \
 k/fps, counted from --time if that is given. All frames have the same samples (--frame), so that nothing flickers that \
 stands still; with --temporal on, frame k continues the sequence of samples as frame --frame + k, and light accumulates \
-from the first frame on.
+from the first frame on. With --hold-time all frames show the moment of --time, so that its light accumulates alone.
   In the name of OUT, one run of # is the number, with zeros up to the length of the run. The folder is made if only it is \
 missing. All files of a frame appear together; Ctrl-C keeps those of finished frames.
   --resume keeps frames whose files are there, if they hold the same settings, scene, planes and version, and are not older \
@@ -72,11 +72,14 @@ Steps of --script; places and sizes are pixels of the window:
   compare off|split|difference
   divider SHARE              0 left to 1 right
   aov NAME                   show another plane
+  overlays on|off            words, lines and messages over the picture
+  frames COUNT               until the picture is the mean of so many frames, with temporal on
   resize WIDTH HEIGHT
   key KEY, type TEXT         F, ?, Ctrl+Z; text into a field
   move X Y, click X Y, double-click X Y, scroll X Y LINES
   drag X Y DX DY [left|middle|right]
   screenshot FILE.png        what is on the window
+  turntable FILE FRAMES      begin to write a turn around the scene
   copy FILE                  the command line that renders the picture
   expect error TEXT          fail unless a message of an error holds the text
   expect no-error            fail if there is one

@@ -21,6 +21,9 @@ pub struct SequenceArgs {
     /// Frames a second, a number or a fraction such as 30000/1001 [default: 30]
     #[arg(long, value_name = "RATE", help_heading = HEADING)]
     pub fps: Option<Rate>,
+    /// Time stands still at --time: with --temporal on, light accumulates over frames of one moment
+    #[arg(long, help_heading = HEADING)]
+    pub hold_time: bool,
     /// Keep frames whose files are there already, made by the same version with the same settings of the same scene
     #[arg(long, help_heading = HEADING)]
     pub resume: bool,
@@ -31,7 +34,8 @@ impl SequenceArgs {
     #[must_use]
     pub fn needs_frames(&self) -> Option<&'static str> {
         let fps = self.fps.map(|_| "--fps");
-        fps.or_else(|| self.resume.then_some("--resume"))
+        let hold = self.hold_time.then_some("--hold-time");
+        fps.or(hold).or_else(|| self.resume.then_some("--resume"))
     }
 }
 

@@ -69,8 +69,13 @@ pub(super) fn run(request: &Request<'_>, frames: Frames) -> anyhow::Result<()> {
 pub(super) fn timeline(request: &Request<'_>, source: &Source, frames: Frames) -> anyhow::Result<Timeline> {
     let Request { args, settings, .. } = request;
     let rate = args.sequence.fps.unwrap_or_default();
-    let timeline = Timeline::new(settings.clone(), rate, source.scene.rig.is_some());
-    if source.scene.rig.is_none() && !timeline.accumulates() {
+    let (moves, holds) = (source.scene.rig.is_some(), args.sequence.hold_time);
+    let timeline = Timeline::new(settings.clone(), rate, moves && !holds);
+    if moves && holds && !timeline.accumulates() {
+        let error = anyhow!("--frames {frames} --hold-time: all frames would be the same");
+        return Err(with_hint(error, "--temporal on accumulates light over the frames of one moment"));
+    }
+    if !moves && !timeline.accumulates() {
         let error =
             anyhow!("--frames {frames}: {} has no animation, all frames would be the same", source.path);
         return Err(with_hint(error, "--temporal on accumulates light over the frames of a still scene"));

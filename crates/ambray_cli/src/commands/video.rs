@@ -39,6 +39,9 @@ pub(super) fn run(request: &Request<'_>, kind: Kind, path: &Path) -> anyhow::Res
     let source = request.open()?;
     let frames = match args.sequence.frames {
         Some(frames) => frames,
+        None if args.sequence.hold_time => {
+            bail!("--hold-time is not allowed without --frames: how many frames?")
+        }
         None => whole(request, &source)?,
     };
     let timeline = timeline(request, &source, frames)?;

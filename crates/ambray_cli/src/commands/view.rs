@@ -10,11 +10,11 @@ pub fn run(args: &ViewArgs) -> anyhow::Result<()> {
         atomic::{Batch, Target},
         settings_file,
     };
-    use ambray_view::{ViewOptions, memory, model::SceneRef};
+    use ambray_view::{Stop, ViewOptions, memory, model::SceneRef};
 
     use crate::{
         args::{Grouping, SettingsArgs},
-        settings,
+        settings, signals,
     };
 
     let SettingsArgs { preset, settings: file, flags, .. } = &args.settings;
@@ -25,6 +25,10 @@ pub fn run(args: &ViewArgs) -> anyhow::Result<()> {
         saved.check()?;
     }
     let scene = SceneRef { path: args.scene.scene.clone(), gltf_scene: args.scene.gltf_scene.clone() };
+    // Ctrl-C closes the window in order, so that an export leaves nothing half written.
+    let stop = Stop::default();
+    let stopping = stop.clone();
+    let graceful = signals::Graceful::telling(move || stopping.request());
     let last = ambray_view::run(ViewOptions {
         scene,
         settings,
@@ -32,12 +36,16 @@ pub fn run(args: &ViewArgs) -> anyhow::Result<()> {
         threads: usize::from(args.threads),
         memory: if args.no_memory { None } else { args.memory.clone().or_else(memory::default_path) },
         script: args.script.clone(),
+        stop,
     })?;
-    let Some(saved) = &saved else { return Ok(()) };
-    let mut batch = Batch::default();
-    let toml = settings_file::write(&last);
-    batch.add(saved, |out| Ok(out.write_all(toml.as_bytes())?))?;
-    batch.commit()
+    if let Some(saved) = &saved {
+        let mut batch = Batch::default();
+        let toml = settings_file::write(&last);
+        batch.add(saved, |out| Ok(out.write_all(toml.as_bytes())?))?;
+        batch.commit()?;
+    }
+    drop(graceful);
+    Ok(signals::check()?)
 }
 
 /// Says that there is no window.

@@ -119,6 +119,19 @@ pub(crate) fn finish(mut child: Child) -> Output {
     child.wait_with_output().expect("output")
 }
 
+/// Looks until there is what is looked for.
+#[track_caller]
+pub(crate) fn wait_for<T>(what: &str, mut look: impl FnMut() -> Option<T>) -> T {
+    let start = Instant::now();
+    loop {
+        if let Some(found) = look() {
+            return found;
+        }
+        assert!(start.elapsed() < PATIENCE, "{what} does not come");
+        thread::sleep(Duration::from_millis(50));
+    }
+}
+
 /// The program ended well and had nothing to say.
 #[track_caller]
 pub(crate) fn assert_quiet(output: &Output) {

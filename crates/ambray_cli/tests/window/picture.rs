@@ -27,20 +27,47 @@ impl Picture {
         self.rgb[y * self.width + x]
     }
 
-    /// Where the middle of `part` lies in this picture: the place of its top left corner, within `tolerance`.
-    pub(crate) fn find(&self, part: &Self, tolerance: u8) -> Option<(usize, usize)> {
-        // The middle is free of labels. A window shows one picture, so the first fit is it.
-        let probe: Vec<(usize, usize)> = (0..64)
-            .map(|i| {
-                (part.width / 4 + (i * 37) % (part.width / 2), part.height / 4 + (i * 53) % (part.height / 2))
-            })
-            .collect();
-        let fits = |x: usize, y: usize| {
-            probe.iter().all(|&(px, py)| is_close(self.at(x + px, y + py), part.at(px, py), tolerance))
+    /// Where `part` lies in this picture: the place of its top left corner, if all of it is there within `tolerance`.
+    pub(crate) fn find(&self, part: &Self, tolerance: Tolerance) -> Option<(usize, usize)> {
+        // A few pixels decide about most places at once.
+        let probe: Vec<(usize, usize)> =
+            (0..256).map(|i| ((i * 7919) % part.width, (i * 104_729) % part.height)).collect();
+        let may_fit = |(x, y): (usize, usize)| {
+            let off =
+                |&&(px, py): &&(usize, usize)| tolerance.is_off(self.at(x + px, y + py), part.at(px, py));
+            // One of them may be an outlier where there may be some.
+            probe.iter().filter(off).nth(if tolerance.outliers > 0.0 { 8 } else { 0 }).is_none()
         };
         let rows = 0..=self.height.checked_sub(part.height)?;
         let columns = 0..=self.width.checked_sub(part.width)?;
-        rows.flat_map(|y| columns.clone().map(move |x| (x, y))).find(|&(x, y)| fits(x, y))
+        let mut places = rows.flat_map(|y| columns.clone().map(move |x| (x, y)));
+        places.find(|&at| may_fit(at) && self.part(at, part.width, part.height).is_like(part, tolerance))
+    }
+
+    /// The part at `(x, y)`.
+    pub(crate) fn part(&self, (x, y): (usize, usize), width: usize, height: usize) -> Self {
+        let rgb = (y..y + height).flat_map(|row| (x..x + width).map(move |column| self.at(column, row)));
+        Self { width, height, rgb: rgb.collect() }
+    }
+
+    /// The same with `factor` pixels for each, on both sides.
+    pub(crate) fn magnified(&self, factor: usize) -> Self {
+        let (width, height) = (factor * self.width, factor * self.height);
+        let rgb = (0..height).flat_map(|y| (0..width).map(move |x| self.at(x / factor, y / factor)));
+        Self { width, height, rgb: rgb.collect() }
+    }
+
+    /// Whether all pixels are those of `other`, but for what the tolerance allows.
+    pub(crate) fn is_like(&self, other: &Self, tolerance: Tolerance) -> bool {
+        assert_eq!((self.width, self.height), (other.width, other.height));
+        let off = self.rgb.iter().zip(&other.rgb).filter(|(a, b)| tolerance.is_off(**a, **b)).count();
+        off as f64 <= tolerance.outliers * self.rgb.len() as f64
+    }
+
+    /// The columns in which it differs from `other`.
+    pub(crate) fn differing_columns(&self, other: &Self) -> Vec<usize> {
+        let differs = |&x: &usize| (0..self.height).any(|y| self.at(x, y) != other.at(x, y));
+        (0..self.width).filter(differs).collect()
     }
 
     /// How many different colours there are.
@@ -49,25 +76,23 @@ impl Picture {
     }
 }
 
-pub(crate) fn is_close(a: [u8; 3], b: [u8; 3], tolerance: u8) -> bool {
-    a.iter().zip(b).all(|(&a, b)| a.abs_diff(b) <= tolerance)
+/// How far pixels may be apart.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Tolerance {
+    /// By how much a byte may differ.
+    bytes: u8,
+    /// Share of the pixels that may differ by more.
+    outliers: f64,
 }
 
-/// Share of the pixels of `part` at `(x, y)` of `whole` that differ by more than `tolerance`: of all, and of the middle, where
-/// nothing is drawn over the picture.
-pub(crate) fn differing(
-    whole: &Picture,
-    part: &Picture,
-    (x, y): (usize, usize),
-    tolerance: u8,
-) -> (f64, f64) {
-    let is_off = |px: usize, py: usize| !is_close(whole.at(x + px, y + py), part.at(px, py), tolerance);
-    let share = |columns: std::ops::Range<usize>, rows: std::ops::Range<usize>| {
-        let count = (columns.len() * rows.len()) as f64;
-        rows.flat_map(|py| columns.clone().map(move |px| (px, py))).filter(|&(px, py)| is_off(px, py)).count()
-            as f64
-            / count
-    };
-    let (w, h) = (part.width, part.height);
-    (share(0..w, 0..h), share(w / 5..4 * w / 5, h / 5..4 * h / 5))
+impl Tolerance {
+    /// Every byte is the same.
+    pub(crate) const NONE: Self = Self { bytes: 0, outliers: 0.0 };
+    /// What the backends promise each other: 10⁻³ but for a pixel in a thousand. Near black, where display values are steepest,
+    /// 10⁻³ are 12.92 · 255 · 10⁻³ bytes.
+    pub(crate) const PARITY: Self = Self { bytes: 4, outliers: 1e-3 };
+
+    fn is_off(self, a: [u8; 3], b: [u8; 3]) -> bool {
+        a.iter().zip(b).any(|(&a, b)| a.abs_diff(b) > self.bytes)
+    }
 }

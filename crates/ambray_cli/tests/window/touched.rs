@@ -1,10 +1,6 @@
 //! The window, with a keyboard and a mouse.
 
-use std::{
-    process::Stdio,
-    thread,
-    time::{Duration, Instant},
-};
+use std::{process::Stdio, thread, time::Duration};
 
 use x11rb::{
     connection::Connection as _,
@@ -18,10 +14,7 @@ use x11rb::{
     rust_connection::RustConnection,
 };
 
-use crate::display::{Display, Place, assert_quiet, finish};
-
-/// How long the window may take for an answer: far more than it does.
-const PATIENCE: Duration = Duration::from_secs(120);
+use crate::display::{Display, Place, assert_quiet, finish, wait_for};
 
 /// The window as the X server has it.
 struct Touched {
@@ -137,18 +130,6 @@ fn changed(a: &[u8], b: &[u8]) -> f64 {
         return 1.0;
     }
     a.iter().zip(b).filter(|(a, b)| a != b).count() as f64 / a.len() as f64
-}
-
-#[track_caller]
-fn wait_for<T>(what: &str, mut look: impl FnMut() -> Option<T>) -> T {
-    let start = Instant::now();
-    loop {
-        if let Some(found) = look() {
-            return found;
-        }
-        assert!(start.elapsed() < PATIENCE, "{what} does not come");
-        thread::sleep(Duration::from_millis(50));
-    }
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! What the application does when a panel or a key asks for it.
 
-use ambray::settings::Preset;
+use ambray::settings::{Preset, Temporal};
 use ambray_files::settings_file::SettingsFile;
 
 use super::{App, Severity, clock, command, drop, errands::Outcome};
@@ -105,14 +105,18 @@ impl App {
     fn copy(&mut self, ctx: &egui::Context, side: Side) {
         let line = self.command_line(side);
         ctx.copy_text(line.clone());
-        self.shown.notify(Severity::Done, "The command line is on the clipboard");
+        // While time goes on, light comes from moments before, which no line names.
+        let is_blended = self.model.playback.is_playing && self.model.of(side).temporal == Temporal::On;
+        let alone =
+            if is_blended { ": it renders this moment alone, without light of those before" } else { "" };
+        self.shown.notify(Severity::Done, format!("The command line is on the clipboard{alone}"));
         self.copied = Some(line);
     }
 
     /// The call of `ambray render` that makes the picture of `side`.
     #[must_use]
     pub fn command_line(&self, side: Side) -> String {
-        command::line(&self.model, &self.shown, side)
+        command::line(&self.model, &self.shown, side, self.frames(side))
     }
 
     const fn toggle_panels(&mut self) {

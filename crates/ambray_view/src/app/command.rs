@@ -5,8 +5,9 @@ use ambray::{Aov, settings::Temporal};
 use super::Shown;
 use crate::model::{Model, Side};
 
-/// The call of `ambray render` that makes the picture of `side`.
-pub(super) fn line(model: &Model, shown: &Shown, side: Side) -> String {
+/// The call of `ambray render` that makes the picture of `side`, which is the mean of `frames` frames; of its settings alone
+/// where that is 0 or 1.
+pub(super) fn line(model: &Model, shown: &Shown, side: Side, frames: u32) -> String {
     let settings = model.of(side);
     let mut more = Vec::new();
     if model.aov != Aov::Beauty {
@@ -14,12 +15,15 @@ pub(super) fn line(model: &Model, shown: &Shown, side: Side) -> String {
         more.extend(["-o".to_owned(), "ambray.png".to_owned()]);
     }
     // Frames that are accumulated: the last picture of the sequence is the one that is seen.
-    let frames = shown.sides[side as usize].as_ref().map_or(1, |rendered| rendered.frames);
     if settings.temporal == Temporal::On && frames > 1 {
         if let Some(name) = more.last_mut() {
             "ambray_####.png".clone_into(name);
         }
-        more.push(format!("--frames={}..{}", settings.frame, settings.frame + frames));
+        // They are counted from --frame on.
+        more.push(format!("--frames=0..{frames}"));
+        if shown.opened.as_ref().is_some_and(|opened| !opened.animations.is_empty()) {
+            more.push("--hold-time".to_owned());
+        }
     }
     let scene = shown.opened.as_ref().map_or(&model.scene, |opened| &opened.scene);
     ambray_files::command_line::render_command(&scene.path, scene.gltf_scene.as_deref(), settings, &more)

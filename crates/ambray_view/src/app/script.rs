@@ -30,6 +30,13 @@ impl App {
         is_same && rendered.level.is_final && rendered.aov == self.model.aov && !self.shown.is_stale[i]
     }
 
+    /// Frames whose mean the final picture of `side` is; 0 while it is not what was asked for.
+    #[must_use]
+    pub fn frames(&self, side: Side) -> u32 {
+        let rendered = self.shown.sides[side as usize].as_ref().filter(|_| self.is_final(side));
+        rendered.map_or(0, |rendered| rendered.frames)
+    }
+
     /// Whether the window is to be closed.
     #[must_use]
     pub const fn is_quitting(&self) -> bool {

@@ -77,6 +77,11 @@ impl Canvas {
         self.pictures.paint(ui, model, shown, &placement);
         if model.comparison == Comparison::Split {
             model.divider = split::drag(ui, canvas, model.divider, takes_keys);
+        }
+        if !model.has_overlays {
+            return;
+        }
+        if model.comparison == Comparison::Split {
             split::paint(ui.painter(), canvas, split::place(canvas, model.divider, scale));
         }
         pictures::label(ui.painter(), canvas, model, shown);

@@ -35,6 +35,8 @@ pub use contract::{
     Order, Pixels, Rendered, Statistics, Wake,
 };
 
+pub use plan::MOST_FRAMES;
+
 use self::{
     gallery::Gallery,
     inbox::{Inbox, SharedInbox},

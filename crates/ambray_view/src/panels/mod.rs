@@ -105,7 +105,9 @@ impl Panels {
         let canvas = ui.available_rect_before_wrap();
         help::show(ui.ctx(), &mut self.is_help_open);
         self.dialogs.show(ui.ctx(), &mut desk);
-        messages::show(ui.ctx(), &mut desk, canvas);
+        if desk.model.has_overlays {
+            messages::show(ui.ctx(), &mut desk, canvas);
+        }
         drop_hint::show(ui.ctx());
         Wishes { actions: desk.actions, is_dragging: desk.is_dragging }
     }

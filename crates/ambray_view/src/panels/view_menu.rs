@@ -14,6 +14,7 @@ const SIZES: [(u32, u32); 4] = [(1280, 720), (1920, 1080), (2560, 1440), (1024, 
 pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     ui.menu_button("Plane", |ui| planes(ui, desk));
     ui.menu_button("Size of the picture", |ui| sizes(ui, desk));
+    ui.checkbox(&mut desk.model.has_overlays, "Words and lines on the picture");
     ui.separator();
     let panels = &mut desk.memory.panels;
     ui.checkbox(&mut panels.settings, "Settings");

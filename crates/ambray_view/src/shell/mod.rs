@@ -10,6 +10,7 @@ mod input;
 mod pictures;
 mod present;
 pub mod script;
+mod stop;
 mod vulkan;
 mod window;
 
@@ -19,6 +20,7 @@ use ambray::{RendererOptions, settings::Settings};
 use anyhow::{Context as _, anyhow};
 use winit::{error::EventLoopError, event_loop::EventLoop};
 
+pub use self::stop::Stop;
 use self::{script::Script, window::Shell};
 use crate::model::SceneRef;
 
@@ -38,6 +40,8 @@ pub struct ViewOptions {
     pub memory: Option<PathBuf>,
     /// A walk through the window, for tests and for pictures of documentation: a file of steps, as [`script`] has them.
     pub script: Option<PathBuf>,
+    /// What closes the window from outside, such as for Ctrl-C.
+    pub stop: Stop,
 }
 
 /// Woken up for.
@@ -47,6 +51,8 @@ enum Wake {
     Engine,
     /// Something is to be drawn at this moment.
     Draw(std::time::Instant),
+    /// The window is to be closed.
+    Stop,
 }
 
 /// Opens the window and returns when it is closed: with the settings of the side that was edited last.
@@ -56,6 +62,7 @@ enum Wake {
 pub fn run(options: ViewOptions) -> anyhow::Result<Settings> {
     let script = options.script.as_deref().map(Script::read).transpose()?;
     let event_loop = EventLoop::<Wake>::with_user_event().build().map_err(|error| no_display(&error))?;
+    options.stop.listen(event_loop.create_proxy());
     let mut shell = Shell::new(options, script, event_loop.create_proxy());
     event_loop.run_app(&mut shell).context("the window")?;
     shell.finish()

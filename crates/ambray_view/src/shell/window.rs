@@ -285,12 +285,15 @@ impl ApplicationHandler<Wake> for Shell {
         }
     }
 
-    fn user_event(&mut self, _: &ActiveEventLoop, wake: Wake) {
-        let Some(open) = &mut self.open else { return };
-        open.draw_by(match wake {
+    fn user_event(&mut self, event_loop: &ActiveEventLoop, wake: Wake) {
+        let at = match wake {
             Wake::Engine => Instant::now(),
             Wake::Draw(at) => at,
-        });
+            Wake::Stop => return event_loop.exit(),
+        };
+        if let Some(open) = &mut self.open {
+            open.draw_by(at);
+        }
     }
 
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {

@@ -65,7 +65,7 @@ impl Exporter<'_> {
             let settings = Settings { frame: shot.settings.frame, ..settings.clone() };
             let label = if shot.frames > 1 {
                 // As the last picture of a sequence says it that was rendered with the copied command line.
-                format!("{}, accumulated from frame 0 at {} fps", self.label, Rate::default())
+                format!("{}, accumulated from frame 0", self.label)
             } else {
                 self.label.to_owned()
             };

@@ -7,4 +7,5 @@ mod schedule;
 mod work;
 
 pub(super) use schedule::{Schedule, Step};
+pub use work::MOST_FRAMES;
 pub(super) use work::{frame_settings, is_same};

@@ -6,7 +6,7 @@ use super::{levels, rate::Rate};
 use crate::engine::contract::Level;
 
 /// Most frames of a view that stands still.
-pub(super) const FRAMES: u32 = 256;
+pub const MOST_FRAMES: u32 = 256;
 
 /// What of `settings` decides a frame; the rest decides how it is shown.
 pub(in crate::engine) fn frame_settings(settings: &Settings) -> Settings {
@@ -66,7 +66,7 @@ impl Work {
     /// Whether more frames are to be accumulated.
     pub(super) fn goes_on(&self) -> bool {
         let is_complete = self.shown.is_some_and(|level| level.is_final);
-        self.left.is_empty() && is_complete && self.accumulates() && self.frames < FRAMES
+        self.left.is_empty() && is_complete && self.accumulates() && self.frames < MOST_FRAMES
     }
 }
 

@@ -12,6 +12,8 @@
 //! | `compare off`, `split`, `difference` | compares the sides |
 //! | `divider SHARE` | moves the divider, 0 at the left, 1 at the right |
 //! | `aov NAME` | shows another plane |
+//! | `overlays on`, `off` | draws words, lines and messages over the picture, or leaves it bare |
+//! | `frames COUNT` | waits until the picture is the mean of so many frames, 256 at most: with `temporal on` |
 //! | `resize WIDTH HEIGHT` | makes the window that large |
 //! | `key KEY` | presses a key: `F`, `?`, `Ctrl+Z` |
 //! | `type TEXT` | types text |
@@ -19,6 +21,7 @@
 //! | `scroll X Y LINES` | turns the wheel, up for numbers above 0 |
 //! | `drag X Y DX DY [left, middle, right]` | drags from a place by so many pixels |
 //! | `screenshot FILE.png` | writes what is on the window |
+//! | `turntable FILE FRAMES` | begins to write a turn around the scene: numbered pictures or a video |
 //! | `copy FILE` | writes the command line that renders the picture |
 //! | `expect error TEXT`, `expect no-error` | fails unless there is a message of an error that holds the text, or none at all |
 //! | `quit` | closes the window; what comes at the end of the script, too |
@@ -46,6 +49,8 @@ enum Step {
     Compare(Comparison),
     Divider(f32),
     Show(Aov),
+    Overlays(bool),
+    Frames(u32),
     Resize(u32, u32),
     Key { key: Key, modifiers: Modifiers, text: Option<String> },
     Type(String),
@@ -54,6 +59,7 @@ enum Step {
     Scroll { at: (f32, f32), lines: f32 },
     Drag { from: (f32, f32), by: (f32, f32), with: PointerButton },
     Screenshot(PathBuf),
+    Turntable { path: PathBuf, frames: u32 },
     Copy(PathBuf),
     ExpectError(String),
     ExpectNoError,

@@ -5,7 +5,10 @@ use anyhow::{Context as _, bail};
 use egui::{Key, Modifiers, PointerButton};
 
 use super::Step;
-use crate::model::{Comparison, Side};
+use crate::{
+    engine::MOST_FRAMES,
+    model::{Comparison, Side},
+};
 
 /// The step that `line` says; it is not empty.
 pub(super) fn step(line: &str) -> anyhow::Result<Step> {
@@ -39,6 +42,17 @@ pub(super) fn step(line: &str) -> anyhow::Result<Step> {
             Step::Divider(share)
         }
         "aov" => Step::Show(rest.parse::<Aov>().map_err(anyhow::Error::msg)?),
+        "overlays" => Step::Overlays(match rest {
+            "on" => true,
+            "off" => false,
+            _ => bail!("expected on or off, not '{rest}'"),
+        }),
+        "frames" => {
+            let count = rest.parse().ok().filter(|count| (1..=MOST_FRAMES).contains(count));
+            Step::Frames(
+                count.with_context(|| format!("expected COUNT from 1 to {MOST_FRAMES}, not '{rest}'"))?,
+            )
+        }
         "resize" => {
             let side = |word: &str| word.parse().ok().filter(|side| (1..=16384).contains(side));
             match words[..] {
@@ -70,6 +84,12 @@ pub(super) fn step(line: &str) -> anyhow::Result<Step> {
             Step::Drag { from: (x, y), by: (dx, dy), with }
         }
         "screenshot" => Step::Screenshot(some(rest, "FILE.png")?.into()),
+        "turntable" => {
+            let (path, frames) = rest.rsplit_once(char::is_whitespace).context("expected FILE FRAMES")?;
+            let frames = frames.parse().ok().filter(|frames| *frames > 0);
+            let frames = frames.with_context(|| format!("expected FILE FRAMES, not '{rest}'"))?;
+            Step::Turntable { path: path.trim().into(), frames }
+        }
         "copy" => Step::Copy(some(rest, "a file")?.into()),
         "expect" => match rest.split_once(char::is_whitespace).unwrap_or((rest, "")) {
             ("error", text) => Step::ExpectError(text.trim().to_owned()),
@@ -148,6 +168,10 @@ mod tests {
             ("side c", "a or b"),
             ("divider 2", "0 to 1"),
             ("aov wood", "wood"),
+            ("turntable turn.gif", "FILE FRAMES"),
+            ("turntable turn.gif 0", "FILE FRAMES"),
+            ("overlays perhaps", "on or off"),
+            ("frames 257", "1 to 256"),
             ("resize 640", "WIDTH HEIGHT"),
             ("resize 0 5", "WIDTH HEIGHT"),
             ("click 1", "X Y"),

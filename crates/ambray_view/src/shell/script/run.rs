@@ -16,11 +16,14 @@ use crate::{
     app::{App, Severity},
     engine::Pixels,
     model::SceneRef,
+    panels::action::Action,
     shell::input,
 };
 
 /// How long a step may take: far more than any does, so that a script that hangs ends with an error.
 const PATIENCE: Duration = Duration::from_secs(300);
+/// Frames a second of the video of a turn.
+const TURN_FPS: f32 = 25.0;
 /// Frames in a row without work after which nothing more is to come.
 const IDLE_FRAMES: u32 = 3;
 
@@ -42,6 +45,8 @@ enum Doing {
     Events(VecDeque<Vec<Event>>),
     /// Until nothing has been going on for so many frames.
     Waiting { idle: u32 },
+    /// Until the picture is the mean of so many frames.
+    Accumulating(u32),
     /// Until the window has this size.
     Resizing(PhysicalSize<u32>),
     /// The next picture of the window goes to this file.
@@ -123,6 +128,12 @@ impl Runner {
                 }
                 if is_idle { Wish::NextFrame } else { Wish::News }
             }
+            Some(Doing::Accumulating(count)) => {
+                if app.frames(app.model.editing) >= *count {
+                    self.doing = None;
+                }
+                Wish::News
+            }
             Some(Doing::Resizing(size)) => {
                 if window.inner_size() == *size {
                     self.doing = None;
@@ -183,12 +194,21 @@ impl Runner {
                 app.model.aov = aov;
                 return Ok(None);
             }
+            Step::Overlays(has) => {
+                app.model.has_overlays = has;
+                return Ok(None);
+            }
+            Step::Frames(count) => return Ok(Some(Doing::Accumulating(count))),
             Step::Resize(width, height) => {
                 let size = PhysicalSize::new(width, height);
                 let _ = window.request_inner_size(size);
                 return Ok(Some(Doing::Resizing(size)));
             }
             Step::Screenshot(path) => return Ok(Some(Doing::Shooting(path))),
+            Step::Turntable { path, frames } => {
+                app.perform(system.egui_ctx(), Action::Turntable { path, frames, fps: TURN_FPS });
+                return Ok(None);
+            }
             Step::Copy(path) => {
                 let line = app.command_line(app.model.editing);
                 fs::write(&path, line + "\n").with_context(|| path.display().to_string())?;
