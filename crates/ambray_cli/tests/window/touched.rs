@@ -7,7 +7,8 @@ use x11rb::{
     protocol::{
         xproto::{
             BUTTON_PRESS_EVENT, BUTTON_RELEASE_EVENT, ClientMessageEvent, ConnectionExt as _, EventMask,
-            ImageFormat, InputFocus, KEY_PRESS_EVENT, KEY_RELEASE_EVENT, MOTION_NOTIFY_EVENT, Window,
+            ImageFormat, InputFocus, KEY_PRESS_EVENT, KEY_RELEASE_EVENT, MOTION_NOTIFY_EVENT, MapState,
+            Window,
         },
         xtest::ConnectionExt as _,
     },
@@ -24,19 +25,23 @@ struct Touched {
 }
 
 impl Touched {
-    /// Waits for the window whose title ends in Ambray.
+    /// Waits until the window is seen whose title ends in Ambray.
     fn find(display: &Display) -> Self {
         let (server, screen) = x11rb::connect(Some(&display.name)).expect("the server");
         let root = server.setup().roots[screen].root;
         let title = server.intern_atom(false, b"_NET_WM_NAME").expect("sent").reply().expect("atom").atom;
         let utf8 = server.intern_atom(false, b"UTF8_STRING").expect("sent").reply().expect("atom").atom;
+        let is_seen = |window| {
+            let state = server.get_window_attributes(window).expect("sent").reply();
+            state.is_ok_and(|state| state.map_state == MapState::VIEWABLE)
+        };
         let is_it = |window| {
             let property = server.get_property(false, window, title, utf8, 0, 64).expect("sent").reply();
             property.is_ok_and(|property| property.value.ends_with("Ambray".as_bytes()))
         };
         let window = wait_for("a window", || {
             let children = server.query_tree(root).expect("sent").reply().expect("windows").children;
-            children.into_iter().find(|&window| is_it(window))
+            children.into_iter().find(|&window| is_it(window) && is_seen(window))
         });
         Self { server, root, window }
     }
