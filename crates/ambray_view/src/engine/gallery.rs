@@ -84,7 +84,7 @@ struct State {
 
 /// What is to be shown.
 enum Task {
-    Picture(Hung, Look),
+    Picture(Hung, Box<Look>),
     Difference([Hung; 2], Aov),
 }
 
@@ -216,7 +216,7 @@ impl State {
                 .is_some_and(|(number, shown)| *number == hung.number && shown.is_same(look));
             if !is_shown {
                 self.shown[i] = Some((hung.number, look.clone()));
-                return Some(Task::Picture(hung.clone(), look.clone()));
+                return Some(Task::Picture(hung.clone(), Box::new(look.clone())));
             }
         }
         let (Some(a), Some(b), Some(look)) = (&self.hung[0], &self.hung[1], &self.looks[0]) else {

@@ -33,6 +33,8 @@ pub(super) struct Worker {
     easel: Easel,
     /// Whether both sides are wanted.
     compares: bool,
+    /// A pixel to be inspected as soon as its picture is there.
+    waiting: Option<(Side, (u32, u32))>,
 }
 
 /// The scene that is open.
@@ -61,6 +63,7 @@ impl Worker {
             keeps_on_device,
             easel: Easel::default(),
             compares: false,
+            waiting: None,
         }
     }
 
@@ -97,10 +100,25 @@ impl Worker {
             self.schedule.take(&order);
             self.compares = order.sides.iter().all(Option::is_some);
             self.easel.look(&order);
-            self.gallery.look(&order, self.easel.side());
+            // Before the gallery: what it says of a picture follows the picture.
             if let Err(message) = self.show() {
                 log::warn!("the picture on the device cannot be shown: {message}");
                 self.easel.clear();
+            }
+            self.gallery.look(&order, self.easel.side());
+            self.keep();
+        }
+    }
+
+    /// Sees to it that every picture that counts as done can be had: the device keeps one frame alone.
+    fn keep(&mut self) {
+        if self.compares && self.schedule.is_still() {
+            // The other side may take its place.
+            self.copy();
+        }
+        for side in Side::ALL {
+            if self.easel.side() != Some(side) && self.gallery.shot(side).is_none() {
+                self.schedule.again(side);
             }
         }
     }
@@ -110,6 +128,7 @@ impl Worker {
         let on_device = self.keeps_on_device && matches!(opened.machine, Machine::Vulkan { .. });
         self.schedule.clear(on_device);
         self.easel.clear();
+        self.waiting = None;
         self.gallery.reopen(opened);
         let old = self.open.replace(Open { renderer, label });
         // A large scene takes its time to be freed.
@@ -138,7 +157,11 @@ impl Worker {
         if self.easel.is_uncopied(side) {
             self.copy();
         }
-        let (Some(open), Some(shot)) = (&mut self.open, self.gallery.shot(side)) else { return };
+        self.waiting = None;
+        let (Some(open), Some(shot)) = (&mut self.open, self.gallery.shot(side)) else {
+            self.waiting = Some((side, pixel));
+            return;
+        };
         let control = Control { threads: self.threads, ..Control::default() };
         let outcome = caught(|| open.renderer.inspect(&shot.settings, &shot.frame, pixel, control));
         let message = match outcome {
@@ -156,6 +179,8 @@ impl Worker {
     fn export(&mut self, export: &Export) {
         let (Export::Screenshot { path, .. } | Export::Turntable { path, .. }) = export;
         let path = path.clone();
+        // Its frames take the place of the one on the device.
+        self.copy();
         let Some(open) = &mut self.open else {
             let message = "no scene is open".to_owned();
             return self.outbox.send(Event::ExportFailed { path, message });
@@ -164,7 +189,6 @@ impl Worker {
             return;
         }
         self.schedule.begin();
-        // Its frames take the place of the one on the device.
         self.easel.clear();
         self.outbox.send(Event::Exporting { share: 0.0 });
         let (outbox, throttle) = (&self.outbox, Throttle::new());
@@ -207,6 +231,9 @@ impl Worker {
                     self.copy();
                 }
             }
+        }
+        if let Some((_, pixel)) = self.waiting.filter(|(side, _)| *side == step.side && step.level.is_final) {
+            self.inspect(step.side, pixel);
         }
         Ok(())
     }

@@ -1,6 +1,7 @@
 //! An engine to talk to, and what it is held against.
 
 use std::{
+    collections::VecDeque,
     path::Path,
     sync::Arc,
     time::{Duration, Instant},
@@ -19,18 +20,25 @@ use ambray_view::{
 /// Nothing here takes nearly as long; what does is stuck.
 const WATCHDOG: Duration = Duration::from_secs(120);
 
-/// An engine on the processor.
+/// An engine, and what it has said.
 pub(crate) struct Desk {
     pub(crate) engine: Engine,
+    /// What was taken in.
     pub(crate) events: Vec<Event>,
+    /// What has come and was not taken in yet.
+    ahead: VecDeque<Event>,
 }
 
 impl Desk {
     pub(crate) fn new() -> Self {
-        let renderer = RendererOptions { backend: BackendChoice::Cpu, ..RendererOptions::default() };
+        Self::of(RendererOptions { backend: BackendChoice::Cpu, ..RendererOptions::default() }, false)
+    }
+
+    /// With an engine of `renderer`.
+    pub(crate) fn of(renderer: RendererOptions, keeps_on_device: bool) -> Self {
         let wake = Wake(Arc::new(|| ()));
-        let engine = Engine::new(EngineOptions { renderer, threads: 0, keeps_on_device: false, wake });
-        Self { engine, events: Vec::new() }
+        let engine = Engine::new(EngineOptions { renderer, threads: 0, keeps_on_device, wake });
+        Self { engine, events: Vec::new(), ahead: VecDeque::new() }
     }
 
     /// With `scene` open.
@@ -46,7 +54,8 @@ impl Desk {
     pub(crate) fn until<T>(&mut self, what: &str, find: impl Fn(&Event) -> Option<T>) -> T {
         let start = Instant::now();
         loop {
-            for event in self.engine.poll() {
+            self.ahead.extend(self.engine.poll());
+            while let Some(event) = self.ahead.pop_front() {
                 let found = find(&event);
                 self.events.push(event);
                 if let Some(found) = found {

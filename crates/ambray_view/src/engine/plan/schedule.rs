@@ -116,6 +116,18 @@ impl Schedule {
         }
     }
 
+    /// The picture of `side` is lost. If it counts as done, it is done again; while an animation plays, the next one takes its place.
+    pub(in crate::engine) fn again(&mut self, side: Side) {
+        let (rate, quick, mode) = (self.rate, self.quick(), self.mode);
+        let work = self.sides[side as usize].as_mut();
+        if mode != Mode::Playing
+            && let Some(work) = work.filter(|work| work.shown.is_some() && work.left.is_empty())
+        {
+            *work = Work { is_refused: work.is_refused, ..Work::new(work.settings.clone()) };
+            work.plan(rate, quick, mode == Mode::Moving);
+        }
+    }
+
     /// How long a first picture may take, seconds.
     const fn quick(&self) -> f64 {
         if self.on_device { QUICK_ON_DEVICE } else { QUICK }

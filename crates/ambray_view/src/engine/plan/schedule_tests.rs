@@ -129,3 +129,15 @@ fn each_moment_that_plays_is_shown_once() {
         assert_eq!(schedule.next(), None);
     }
 }
+
+#[test]
+fn a_picture_that_is_lost_is_made_again_unless_it_is_under_way() {
+    let mut schedule = Schedule::default();
+    schedule.take(&order(&settings(8), Some(&settings(4))));
+    // Nothing is done yet that could be lost.
+    schedule.again(Side::A);
+    assert_eq!(names(&mut schedule, 20).len(), 8);
+    schedule.again(Side::A);
+    let steps = names(&mut schedule, 20);
+    assert!(!steps.is_empty() && steps.iter().all(|step| step.0 == Side::A), "{steps:?}");
+}
