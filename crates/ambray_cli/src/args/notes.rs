@@ -76,7 +76,7 @@ Steps of --script; places and sizes are pixels of the window:
   frames COUNT               until the picture is the mean of so many frames, with temporal on
   resize WIDTH HEIGHT
   key KEY, type TEXT         F, ?, Ctrl+Z; text into a field
-  move X Y, click X Y, double-click X Y, scroll X Y LINES
+  move X Y, click X Y, double-click X Y, alt-click X Y, scroll X Y LINES
   drag X Y DX DY [left|middle|right]
   screenshot FILE.png        what is on the window
   turntable FILE FRAMES      begin to write a turn around the scene

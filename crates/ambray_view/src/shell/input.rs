@@ -27,12 +27,14 @@ pub(super) fn move_to(pos: Pos2) -> Frames {
     vec![vec![Event::PointerMoved(pos)], Vec::new()]
 }
 
-/// `count` clicks at `pos`, points.
-pub(super) fn click(pos: Pos2, count: usize) -> Frames {
+/// `count` clicks at `pos`, points, while `modifiers` are held.
+pub(super) fn click(pos: Pos2, count: usize, modifiers: Modifiers) -> Frames {
     let mut frames = move_to(pos);
+    frames.push(vec![Event::ModifiersChanged(modifiers)]);
     for _ in 0..count {
         frames.extend([true, false].map(|pressed| vec![button(pos, PointerButton::Primary, pressed)]));
     }
+    frames.push(vec![Event::ModifiersChanged(Modifiers::NONE)]);
     frames
 }
 

@@ -17,7 +17,7 @@
 //! | `resize WIDTH HEIGHT` | makes the window that large |
 //! | `key KEY` | presses a key: `F`, `?`, `Ctrl+Z` |
 //! | `type TEXT` | types text |
-//! | `move X Y`, `click X Y`, `double-click X Y` | uses the pointer |
+//! | `move X Y`, `click X Y`, `double-click X Y`, `alt-click X Y` | uses the pointer |
 //! | `scroll X Y LINES` | turns the wheel, up for numbers above 0 |
 //! | `drag X Y DX DY [left, middle, right]` | drags from a place by so many pixels |
 //! | `screenshot FILE.png` | writes what is on the window |
@@ -55,7 +55,7 @@ enum Step {
     Key { key: Key, modifiers: Modifiers, text: Option<String> },
     Type(String),
     Move(f32, f32),
-    Click { at: (f32, f32), count: usize },
+    Click { at: (f32, f32), count: usize, modifiers: Modifiers },
     Scroll { at: (f32, f32), lines: f32 },
     Drag { from: (f32, f32), by: (f32, f32), with: PointerButton },
     Screenshot(PathBuf),

@@ -65,9 +65,11 @@ pub(super) fn step(line: &str) -> anyhow::Result<Step> {
         "key" => key(rest)?,
         "type" => Step::Type(some(rest, "text")?.to_owned()),
         "move" => Step::Move(numbers::<2>(&words, "X Y")?[0], numbers::<2>(&words, "X Y")?[1]),
-        "click" | "double-click" => {
+        "click" | "double-click" | "alt-click" => {
             let [x, y] = numbers(&words, "X Y")?;
-            Step::Click { at: (x, y), count: if verb == "click" { 1 } else { 2 } }
+            let count = if verb == "double-click" { 2 } else { 1 };
+            let modifiers = if verb == "alt-click" { Modifiers::ALT } else { Modifiers::NONE };
+            Step::Click { at: (x, y), count, modifiers }
         }
         "scroll" => {
             let [x, y, lines] = numbers(&words, "X Y LINES")?;

@@ -223,7 +223,7 @@ impl Runner {
             Step::Key { key, modifiers, text } => input::key(key, modifiers, text.as_deref()),
             Step::Type(text) => input::text(&text),
             Step::Move(x, y) => input::move_to(pos((x, y))),
-            Step::Click { at, count } => input::click(pos(at), count),
+            Step::Click { at, count, modifiers } => input::click(pos(at), count, modifiers),
             Step::Scroll { at, lines } => input::scroll(pos(at), lines),
             Step::Drag { from, by: (dx, dy), with } => {
                 input::drag(pos(from), Vec2::new(dx, dy) / scale, with)
