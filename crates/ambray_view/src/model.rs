@@ -191,8 +191,12 @@ impl Model {
         &mut self.settings[side as usize]
     }
 
-    /// Gives the other side what both share, from the side that is edited: camera, size, moment and display.
+    /// Gives the other side what both share, from the side that is edited: camera, size, moment and display. Without a
+    /// comparison that is side A.
     pub fn share(&mut self) {
+        if self.comparison == Comparison::Off {
+            self.editing = Side::A; // B cannot be seen
+        }
         let from = self.of(self.editing).clone();
         let to = self.of_mut(self.editing.other());
         *to = Settings {

@@ -126,6 +126,7 @@ impl Inspector {
             .open(&mut is_open)
             .default_pos(placement.canvas.left_top() + egui::vec2(16.0, 48.0))
             .default_width(330.0)
+            .default_height(0.6 * placement.canvas.height())
             .vscroll(true)
             .show(ui.ctx(), |ui| {
                 let Some((pin, frame)) =

@@ -45,7 +45,10 @@ fn plot(ui: &mut Ui, desk: &Desk<'_>) {
     for (i, name) in NAMES.iter().enumerate() {
         let first = (places - timings.len().min(places)) as f64 + 0.5;
         let bars = timings.iter().enumerate().map(|(at, timing)| {
-            Bar::new(first + at as f64, stages(&timing.stats.times)[i]).width(1.0).stroke(egui::Stroke::NONE)
+            Bar::new(first + at as f64, stages(&timing.stats.times)[i])
+                .width(1.0)
+                .fill(look::STAGES[i])
+                .stroke(egui::Stroke::NONE)
         });
         let chart = BarChart::new(*name, bars.collect()).color(look::STAGES[i]).allow_hover(false);
         let below: Vec<&BarChart> = charts.iter().collect();
