@@ -91,6 +91,9 @@ fn names_of_frames_are_checked_before_the_work() {
     );
     refused(&["--frames=0..3:2", "--temporal=on"], &["--temporal on, which needs every frame"]);
     refused(&["--fps=25"], &["--fps is not allowed without --frames"]);
+    refused(&["--hold-time"], &["--hold-time is not allowed without --frames"]);
+    refused(&["--frames=0..3", "--hold-time"], &["all frames would be the same", "--temporal on"]);
+    refused(&["--hold-time", "-o", "a.gif"], &["--hold-time is not allowed without --frames"]);
     refused(&["--resume"], &["--resume is not allowed without --frames"]);
     refused(&["--frames=0..3", "--save-settings=ambray_0001.png"], &["the picture goes there"]);
     fs::create_dir(bench.path("2.png")).expect("folder");
@@ -203,4 +206,20 @@ fn accumulated_frames_are_the_same_when_resumed() {
     // A still scene accumulates as well.
     bench.render(&["--frames=0..2", "--temporal=on", "-o", "still_#.png"]).succeeds();
     assert!(bench.path("still_1.png").exists());
+}
+
+#[test]
+fn time_that_is_held_leaves_the_light_of_one_moment() {
+    let bench = Bench::new();
+    let moment =
+        ["render", "banner", "--size=64x36", "--time=0.3", "--temporal=on", "--spp=1", "--backend=cpu"];
+    bench.run(&[&moment[..], &["--frames=0..3", "--hold-time", "-o", "held_#.png"]].concat()).succeeds();
+    let third = Png::of(&bench.read("held_2.png"));
+    let (settings, scene) = (third.text("ambray:settings"), third.text("ambray:scene"));
+    assert!(settings.contains("time = 0.3") && settings.contains("frame = 2"), "{settings}");
+    assert!(scene.ends_with("accumulated from frame 0"), "{scene}");
+    bench.run(&[&moment[..], &["-o", "alone.png"]].concat()).succeeds();
+    let (first, alone) = (Png::of(&bench.read("held_0.png")), Png::of(&bench.read("alone.png")));
+    assert!(first.bytes == alone.bytes, "the first one stands alone");
+    assert!(third.bytes != alone.bytes, "the third one is their mean");
 }

@@ -3,6 +3,7 @@
 #![forbid(unsafe_code)]
 
 mod display;
+mod dropped;
 mod picture;
 mod scripted;
 mod touched;

@@ -18,19 +18,19 @@ use x11rb::{
 use crate::display::{Display, Place, assert_quiet, finish, wait_for};
 
 /// The window as the X server has it.
-struct Touched {
-    server: RustConnection,
-    root: Window,
-    window: Window,
+pub(crate) struct Touched {
+    pub(crate) server: RustConnection,
+    pub(crate) root: Window,
+    pub(crate) window: Window,
 }
 
 impl Touched {
     /// Waits until the window is seen whose title ends in Ambray.
-    fn find(display: &Display) -> Self {
+    pub(crate) fn find(display: &Display) -> Self {
         let (server, screen) = x11rb::connect(Some(&display.name)).expect("the server");
         let root = server.setup().roots[screen].root;
-        let title = server.intern_atom(false, b"_NET_WM_NAME").expect("sent").reply().expect("atom").atom;
-        let utf8 = server.intern_atom(false, b"UTF8_STRING").expect("sent").reply().expect("atom").atom;
+        let atom = |name: &[u8]| server.intern_atom(false, name).expect("sent").reply().expect("atom").atom;
+        let (title, utf8) = (atom(b"_NET_WM_NAME"), atom(b"UTF8_STRING"));
         let is_seen = |window| {
             let state = server.get_window_attributes(window).expect("sent").reply();
             state.is_ok_and(|state| state.map_state == MapState::VIEWABLE)
@@ -44,6 +44,13 @@ impl Touched {
             children.into_iter().find(|&window| is_it(window) && is_seen(window))
         });
         Self { server, root, window }
+    }
+
+    /// The window's title.
+    pub(crate) fn title(&self) -> String {
+        let (title, utf8) = (self.atom("_NET_WM_NAME"), self.atom("UTF8_STRING"));
+        let property = self.server.get_property(false, self.window, title, utf8, 0, 1024).expect("sent");
+        String::from_utf8(property.reply().expect("a title").value).expect("a title")
     }
 
     /// What is on the screen.
@@ -62,7 +69,7 @@ impl Touched {
     }
 
     /// Waits until the window shows the same for a second, and something other than `before`.
-    fn settled(&self, before: &[u8]) -> Vec<u8> {
+    pub(crate) fn settled(&self, before: &[u8]) -> Vec<u8> {
         let mut last = self.pixels();
         let mut same = 0;
         wait_for("another picture", || {
@@ -119,11 +126,17 @@ impl Touched {
     }
 
     /// Asks the window to close, as a click on its cross does.
-    fn close(&self) {
-        let atom =
-            |name: &[u8]| self.server.intern_atom(false, name).expect("sent").reply().expect("atom").atom;
-        let data = [atom(b"WM_DELETE_WINDOW"), x11rb::CURRENT_TIME, 0, 0, 0];
-        let message = ClientMessageEvent::new(32, self.window, atom(b"WM_PROTOCOLS"), data);
+    pub(crate) fn close(&self) {
+        self.tell("WM_PROTOCOLS", [self.atom("WM_DELETE_WINDOW"), x11rb::CURRENT_TIME, 0, 0, 0]);
+    }
+
+    pub(crate) fn atom(&self, name: &str) -> u32 {
+        self.server.intern_atom(false, name.as_bytes()).expect("sent").reply().expect("atom").atom
+    }
+
+    /// Sends the window a message.
+    pub(crate) fn tell(&self, message: &str, data: [u32; 5]) {
+        let message = ClientMessageEvent::new(32, self.window, self.atom(message), data);
         self.server.send_event(false, self.window, EventMask::NO_EVENT, message).expect("sent");
         self.server.flush().expect("sent");
     }
