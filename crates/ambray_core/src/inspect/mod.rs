@@ -1,7 +1,7 @@
 //! The pixel inspector: everything that one pixel of a frame did.
 //!
 //! The pixel is gathered once more, alone, by the same [`gather`] that made the frame; what it left in its buffers
-//! is read, shadow rays are overheard by a [`Recording`], and the filter is asked for its verdicts. So nothing here can tell
+//! is read, shadow rays are overheard by a `Recording`, and the filter is asked for its verdicts. So nothing here can tell
 //! another story than the picture.
 
 mod parts;
