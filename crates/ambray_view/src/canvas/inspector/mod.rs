@@ -24,6 +24,9 @@ use crate::{
 use draw::Drawing;
 use legend::Wanted;
 
+/// Width of the window, points.
+const WIDTH: f32 = 330.0;
+
 /// A pixel of the picture of a side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Pin {
@@ -122,11 +125,19 @@ impl Inspector {
         let subject = self.pinned.or(under_cursor);
         let is_split = model.sides().len() > 1;
         let mut is_open = true;
+        // Not over the pixel that opens it.
+        let canvas = placement.canvas;
+        let is_on_the_left = response.interact_pointer_pos().is_some_and(|place| place.x < canvas.center().x);
+        let left = if is_on_the_left {
+            (canvas.right() - WIDTH - 36.0).max(canvas.left())
+        } else {
+            canvas.left() + 16.0
+        };
         egui::Window::new("Pixel inspector")
             .open(&mut is_open)
-            .default_pos(placement.canvas.left_top() + egui::vec2(16.0, 48.0))
-            .default_width(330.0)
-            .default_height(0.6 * placement.canvas.height())
+            .default_pos([left, canvas.top() + 48.0])
+            .default_width(WIDTH)
+            .default_height(0.6 * canvas.height())
             .vscroll(true)
             .show(ui.ctx(), |ui| {
                 let Some((pin, frame)) =
@@ -147,7 +158,9 @@ impl Inspector {
                         self.pinned = None;
                     }
                 });
-                let values = egui::CollapsingHeader::new("Values").default_open(true);
+                // The rays of a pinned pixel are worth more room than its values.
+                let values = egui::CollapsingHeader::new("Values").id_salt(("values", self.pinned.is_some()));
+                let values = values.default_open(self.pinned.is_none());
                 values.show(ui, |ui| window::values(ui, frame, pin.pixel));
                 if self.pinned.is_none() {
                     ui.weak("Alt+click inspects the rays of a pixel.");

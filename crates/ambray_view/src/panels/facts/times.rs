@@ -75,12 +75,13 @@ fn plot(ui: &mut Ui, desk: &Desk<'_>) {
         .show(ui, |plot| charts.into_iter().for_each(|chart| plot.bar_chart(chart)));
 }
 
-/// Marks at one or two round values below the top.
+/// Marks at zero, and at one or two round values below the top.
 fn marks(highest: f64) -> Vec<GridMark> {
     let decade = 10f64.powf(highest.log10().floor());
     let step = [5.0, 2.0, 1.0].into_iter().map(|n| n * decade).find(|step| *step <= highest);
     let step = step.unwrap_or(decade);
-    (0..3).map(|i| GridMark { value: f64::from(i) * step, step_size: step }).collect()
+    let values = (0..3).map(|i| f64::from(i) * step).filter(|value| *value <= highest);
+    values.map(|value| GridMark { value, step_size: step }).collect()
 }
 
 fn numbers(ui: &mut Ui, timing: &Timing) {
