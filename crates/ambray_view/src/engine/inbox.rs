@@ -44,6 +44,8 @@ struct InFlight {
     side: Side,
     /// What was asked for when it began.
     asked: Option<Settings>,
+    /// Whether it continues earlier frames, which would be lost with it.
+    goes_on: bool,
 }
 
 #[derive(Debug, Default)]
@@ -100,6 +102,16 @@ impl Inbox {
         self.changed.notify_all();
     }
 
+    /// Asks for an inspection, which waits for a frame that continues others: they would have to be rendered again.
+    pub(super) fn inspect(&self, side: Side, pixel: (u32, u32)) {
+        let mut state = lock(&self.state);
+        state.mail.inspect = Some((side, pixel));
+        if state.in_flight.as_ref().is_some_and(|picture| !picture.goes_on) {
+            self.cancel.store(true, Ordering::Relaxed);
+        }
+        self.changed.notify_all();
+    }
+
     /// Stops everything.
     pub(super) fn close(&self) {
         let mut state = lock(&self.state);
@@ -139,7 +151,8 @@ impl Inbox {
         self.cancel.store(false, Ordering::Relaxed);
         let asked = state.latest.as_ref().and_then(|order| order.sides[step.side as usize].as_ref());
         let asked = asked.map(frame_settings);
-        state.in_flight = (!step.is_first).then_some(InFlight { side: step.side, asked });
+        let picture = InFlight { side: step.side, asked, goes_on: step.frames > 1 };
+        state.in_flight = (!step.is_first).then_some(picture);
         true
     }
 
@@ -178,3 +191,32 @@ fn is_repeated(latest: &Order, order: &Order) -> bool {
 
 /// The inbox as several threads hold it.
 pub(super) type SharedInbox = Arc<Inbox>;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::contract::Level;
+
+    #[test]
+    fn an_inspection_does_not_cost_the_frames_that_have_accumulated() {
+        let step = |frames| Step {
+            side: Side::A,
+            settings: Settings::default(),
+            level: Level { scale: 1.0, spp: 8, is_final: true },
+            frames,
+            begins: frames == 1,
+            is_shown: true,
+            is_first: false,
+            share: [0.0, 1.0],
+        };
+        for (frames, is_cancelled) in [(1, true), (2, false)] {
+            let inbox = Inbox::default();
+            assert!(inbox.begin(&step(frames)));
+            inbox.inspect(Side::A, (1, 2));
+            assert_eq!(inbox.cancel().load(Ordering::Relaxed), is_cancelled, "{frames}");
+            inbox.end();
+            let mail = inbox.take(true).expect("nothing is over");
+            assert_eq!(mail.inspect, Some((Side::A, (1, 2))));
+        }
+    }
+}

@@ -105,7 +105,7 @@ impl Engine {
 
     /// Asks what the pixel at `(x, y)` of the picture of `side` did; the answer is [`Event::Inspected`].
     pub fn inspect(&self, side: Side, pixel: (u32, u32)) {
-        self.inbox.put(|mail| mail.inspect = Some((side, pixel)));
+        self.inbox.inspect(side, pixel);
     }
 
     /// Begins an export. Pictures wait while it is under way; those that hang can still be shown in another way.
