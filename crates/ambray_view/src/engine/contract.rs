@@ -123,7 +123,7 @@ pub struct Rendered {
     pub statistics: Option<Arc<Statistics>>,
     /// What it took.
     pub stats: FrameStats,
-    /// Bytes of the frame, which is kept.
+    /// Bytes of the frame, which is kept; on a device both sides share them.
     pub frame_bytes: u64,
 }
 

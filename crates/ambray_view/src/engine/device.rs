@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use ambray::{DeviceFrame, RenderError, Renderer};
+use ambray::{DeviceFrame, RenderError, Renderer, vulkan::VulkanBackend};
 
 use super::{
     contract::{Content, Event, Order, Rendered},
@@ -65,6 +65,7 @@ impl Easel {
         let Step { side, settings, level, frames, .. } = &drawing.step;
         let settings = look.over(settings);
         let picture = renderer.show(look.aov, &settings)?;
+        let pixels = u64::from(settings.size.width) * u64::from(settings.size.height);
         outbox.send(Event::Picture(Box::new(Rendered {
             side: *side,
             settings,
@@ -73,7 +74,7 @@ impl Easel {
             level: *level,
             frames: *frames,
             stats: drawing.frame.stats,
-            frame_bytes: 0,
+            frame_bytes: VulkanBackend::bytes_per_pixel() * pixels,
             content: Content::Device { picture, frame: None },
             statistics: None,
         })));

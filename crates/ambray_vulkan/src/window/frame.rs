@@ -6,7 +6,7 @@ use ash::vk;
 
 use super::{
     Copy, Painting,
-    image::whole,
+    image::{transition, whole_layer},
     painter::Painter,
     swapchain::Target,
     textures::{Keep, Textures},
@@ -195,29 +195,13 @@ fn clip([x, y, width, height]: [u32; 4], extent: vk::Extent2D) -> Option<vk::Rec
 fn record_copy(recorder: &mut Recorder<'_>, target: &Target, copy: &Buffer) {
     use vk::{AccessFlags as Access, ImageLayout as Layout, PipelineStageFlags as Stage};
     let (device, buffer) = (&recorder.context().device, recorder.raw());
-    let barrier = |old, new, from, to| {
-        vk::ImageMemoryBarrier::default()
-            .old_layout(old)
-            .new_layout(new)
-            .src_access_mask(from)
-            .dst_access_mask(to)
-            .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-            .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-            .image(target.image)
-            .subresource_range(whole())
-    };
     let shown = Layout::PRESENT_SRC_KHR;
     let source = Layout::TRANSFER_SRC_OPTIMAL;
-    let before = barrier(shown, source, Access::COLOR_ATTACHMENT_WRITE, Access::TRANSFER_READ);
-    let after = barrier(source, shown, Access::TRANSFER_READ, Access::empty());
-    let region = vk::BufferImageCopy::default()
-        .image_subresource(vk::ImageSubresourceLayers {
-            aspect_mask: vk::ImageAspectFlags::COLOR,
-            mip_level: 0,
-            base_array_layer: 0,
-            layer_count: 1,
-        })
-        .image_extent(target.extent.into());
+    let before =
+        transition(target.image, [shown, source], [Access::COLOR_ATTACHMENT_WRITE, Access::TRANSFER_READ]);
+    let after = transition(target.image, [source, shown], [Access::TRANSFER_READ, Access::empty()]);
+    let region =
+        vk::BufferImageCopy::default().image_subresource(whole_layer()).image_extent(target.extent.into());
     let none = vk::DependencyFlags::empty();
     // SAFETY: the buffer is being recorded, outside of render passes; the image can be copied, and the buffer has room for all
     // of its pixels; both live until the submission is through.

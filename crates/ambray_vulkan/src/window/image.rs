@@ -18,6 +18,33 @@ pub(super) const fn whole() -> vk::ImageSubresourceRange {
     }
 }
 
+/// The same, to be copied from or to.
+pub(super) const fn whole_layer() -> vk::ImageSubresourceLayers {
+    vk::ImageSubresourceLayers {
+        aspect_mask: vk::ImageAspectFlags::COLOR,
+        mip_level: 0,
+        base_array_layer: 0,
+        layer_count: 1,
+    }
+}
+
+/// The way of `image` from a layout and its last access to the next ones, on one queue.
+pub(super) fn transition(
+    image: vk::Image,
+    layouts: [vk::ImageLayout; 2],
+    accesses: [vk::AccessFlags; 2],
+) -> vk::ImageMemoryBarrier<'static> {
+    vk::ImageMemoryBarrier::default()
+        .old_layout(layouts[0])
+        .new_layout(layouts[1])
+        .src_access_mask(accesses[0])
+        .dst_access_mask(accesses[1])
+        .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+        .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+        .image(image)
+        .subresource_range(whole())
+}
+
 /// A view of the whole of `image`, to be destroyed by the caller.
 pub(super) fn view(context: &Context, image: vk::Image, format: vk::Format) -> Result<vk::ImageView> {
     let info = vk::ImageViewCreateInfo::default()

@@ -5,7 +5,7 @@ use std::{any::Any, collections::HashMap, sync::Arc};
 use ash::vk;
 
 use super::{
-    image::whole,
+    image::{transition, whole_layer},
     missing,
     painter::{Descriptor, Painter},
 };
@@ -160,28 +160,17 @@ fn copy(
 ) {
     use vk::{AccessFlags as Access, ImageLayout as Layout, PipelineStageFlags as Stage};
     let (device, buffer) = (&recorder.context().device, recorder.raw());
-    let barrier = |old, new, from, to| {
-        vk::ImageMemoryBarrier::default()
-            .old_layout(old)
-            .new_layout(new)
-            .src_access_mask(from)
-            .dst_access_mask(to)
-            .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-            .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-            .image(image)
-            .subresource_range(whole())
-    };
     let sampled = Layout::SHADER_READ_ONLY_OPTIMAL;
     let old = if is_new { Layout::UNDEFINED } else { sampled };
-    let before = barrier(old, Layout::TRANSFER_DST_OPTIMAL, Access::empty(), Access::TRANSFER_WRITE);
-    let after = barrier(Layout::TRANSFER_DST_OPTIMAL, sampled, Access::TRANSFER_WRITE, Access::SHADER_READ);
+    let before =
+        transition(image, [old, Layout::TRANSFER_DST_OPTIMAL], [Access::empty(), Access::TRANSFER_WRITE]);
+    let after = transition(
+        image,
+        [Layout::TRANSFER_DST_OPTIMAL, sampled],
+        [Access::TRANSFER_WRITE, Access::SHADER_READ],
+    );
     let region = vk::BufferImageCopy::default()
-        .image_subresource(vk::ImageSubresourceLayers {
-            aspect_mask: vk::ImageAspectFlags::COLOR,
-            mip_level: 0,
-            base_array_layer: 0,
-            layer_count: 1,
-        })
+        .image_subresource(whole_layer())
         .image_offset(vk::Offset3D { x: at[0] as i32, y: at[1] as i32, z: 0 })
         .image_extent(vk::Extent3D { width: size[0], height: size[1], depth: 1 });
     let none = vk::DependencyFlags::empty();

@@ -141,13 +141,15 @@ fn machine(ui: &mut Ui, desk: &Desk<'_>) {
         }
     }
     look::fact(ui, "trees", look::bytes(opened.build.acceleration_bytes));
-    look::fact(ui, "planes", look::bytes(planes(desk)));
+    let on_device = matches!(opened.machine, Machine::Vulkan { .. });
+    look::fact(ui, "planes", look::bytes(planes(desk, on_device)));
     if let Machine::Cpu { reason: Some(reason), .. } = &opened.machine {
         ui.add(egui::Label::new(RichText::new(format!("No device: {reason}")).weak().small()).wrap());
     }
 }
 
-/// Bytes of the pictures of the sides that are shown.
-fn planes(desk: &Desk<'_>) -> u64 {
-    desk.shown.sides.iter().flatten().map(|rendered| rendered.frame_bytes).sum()
+/// Bytes of the pictures of the sides that are shown; on a device one takes the place of the other.
+fn planes(desk: &Desk<'_>, on_device: bool) -> u64 {
+    let each = desk.shown.sides.iter().flatten().map(|rendered| rendered.frame_bytes);
+    if on_device { each.max().unwrap_or(0) } else { each.sum() }
 }
