@@ -4,7 +4,7 @@ use ambray::{
     Aov, Frame,
     inspect::{Inspection, Tap},
 };
-use egui::{Color32, Grid, RichText, ScrollArea, Sense, StrokeKind, TextStyle, Ui, Vec2, vec2};
+use egui::{Color32, Grid, Label, RichText, ScrollArea, Sense, StrokeKind, TextStyle, Ui, Vec2, vec2};
 
 use super::legend::Kind;
 
@@ -88,7 +88,8 @@ fn list(ui: &mut Ui, title: &str, count: usize, line: impl Fn(usize) -> (String,
         area.show_rows(ui, height, count, |ui, rows| {
             for i in rows {
                 let (text, kind) = line(i);
-                ui.label(RichText::new(text).monospace().color(kind.color()));
+                // One row each: the list counts on rows of equal height.
+                ui.add(Label::new(RichText::new(text).monospace().color(kind.color())).extend());
             }
         });
     });
