@@ -1,7 +1,7 @@
 //! The bar at the bottom: the animation, and light that accumulates.
 
 use ambray::settings::{Auto, Settings, Temporal};
-use egui::{Button, ComboBox, DragValue, RichText, Slider, Ui};
+use egui::{Button, ComboBox, DragValue, Label, RichText, Slider, Ui};
 
 use super::{Desk, action::Action};
 
@@ -27,7 +27,7 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
         accumulation(ui, desk);
         if !reason.is_empty() {
             ui.separator();
-            ui.label(RichText::new(reason).weak());
+            ui.add(Label::new(RichText::new(reason).weak()).truncate());
         }
     });
     ui.add_space(1.0);
@@ -65,7 +65,7 @@ fn transport(ui: &mut Ui, desk: &mut Desk<'_>, animations: &[(String, f32)]) {
     ui.checkbox(&mut settings.animation_loop, "loop").on_hover_text(tip);
     let length = duration(settings, animations);
     let mut time = settings.time.unwrap_or(0.0);
-    ui.spacing_mut().slider_width = (ui.available_width() - 560.0).clamp(80.0, 900.0);
+    ui.spacing_mut().slider_width = (ui.available_width() - 580.0).clamp(80.0, 900.0);
     let slider = Slider::new(&mut time, 0.0..=length.max(1e-3)).fixed_decimals(3).suffix(" s");
     let slider = ui.add(slider.clamping(egui::SliderClamping::Never));
     slider.widget_info(|| egui::WidgetInfo::slider(true, f64::from(time), "time in the animation"));
@@ -116,6 +116,7 @@ fn accumulation(ui: &mut Ui, desk: &mut Desk<'_>) {
     }
     let frames = desk.shown.sides[desk.model.editing as usize].as_ref().map_or(0, |rendered| rendered.frames);
     if is_on {
-        ui.label(RichText::new(format!("{frames:>3} frames")).monospace());
+        let word = if frames == 1 { "frame" } else { "frames" };
+        ui.label(RichText::new(format!("{frames:>3} {word}")).monospace());
     }
 }

@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use egui::{Context, DragValue, Grid, Window};
+use egui::{Align2, Context, DragValue, Grid, Window};
 use egui_file_dialog::{DialogState, FileDialog};
 
 use super::{
@@ -60,6 +60,7 @@ impl Dialogs {
 
     fn ask_for_file(&mut self, question: Question, file_name: &str) {
         let mut dialog = FileDialog::new().title(title(question)).default_file_name(file_name);
+        dialog = dialog.anchor(Align2::CENTER_CENTER, [0.0, 0.0]);
         if let Some(folder) = &self.folder {
             dialog = dialog.initial_directory(folder.clone());
         }
