@@ -169,7 +169,7 @@ mod tests {
             ("set radius", "NAME VALUE"),
             ("side c", "a or b"),
             ("divider 2", "0 to 1"),
-            ("aov wood", "wood"),
+            ("aov wood", "expected one of beauty"),
             ("turntable turn.gif", "FILE FRAMES"),
             ("turntable turn.gif 0", "FILE FRAMES"),
             ("overlays perhaps", "on or off"),
