@@ -78,7 +78,7 @@ fn accumulated_light_is_in_the_screenshot() {
         Ok(())
     );
     let head = Head::read(&path).expect("a file").expect("a picture");
-    assert_eq!(head.scene.as_deref(), Some("atrium, accumulated from frame 0 at 30 fps"));
+    assert_eq!(head.scene.as_deref(), Some("atrium, accumulated from frame 0"));
     assert!(head.settings.expect("settings").contains("frame = 255"));
 }
 
