@@ -19,10 +19,10 @@ use crate::{
     canvas::Canvas,
     engine::{Engine, Event, Order},
     memory::{Memory, Store, look_of},
-    model::{Comparison, Model, SceneRef, Side},
+    model::{Bookmark, Comparison, Model, SceneRef, Side},
     panels::{Panels, Wishes},
 };
-use ambray::settings::Settings;
+use ambray::settings::{Auto, Settings};
 use clock::Clock;
 use errands::Errands;
 use history::History;
@@ -53,6 +53,8 @@ pub struct App {
     valid: [Settings; 2],
     /// The last line that was put on the clipboard.
     copied: Option<String>,
+    /// Whether a picture of side A has arrived since the last frame of the window.
+    has_arrived: bool,
     is_quitting: bool,
 }
 
@@ -86,6 +88,7 @@ impl App {
             sent: None,
             valid,
             copied: None,
+            has_arrived: false,
             is_quitting: false,
         }
     }
@@ -93,7 +96,8 @@ impl App {
     /// One frame of the window: takes what the engine has delivered, draws, and says what is wanted next.
     pub fn ui(&mut self, ui: &mut egui::Ui) {
         let now = ui.input(|input| input.time);
-        let has_arrived = self.take_events();
+        self.hear();
+        let has_arrived = std::mem::take(&mut self.has_arrived);
         self.take_outcomes();
         self.clock.tick(&mut self.model, self.shown.opened.as_deref(), has_arrived, now);
         if self.asked.as_ref() != Some(&self.model.scene) {
@@ -112,23 +116,38 @@ impl App {
         self.remember(ui.ctx(), now);
     }
 
-    /// Takes what the engine has delivered; says whether a picture of side A was among it.
-    fn take_events(&mut self) -> bool {
-        let mut has_arrived = false;
+    /// Takes what the engine has delivered. Called also where nothing is drawn, so that pictures do not pile up behind a
+    /// window that is hidden.
+    pub fn hear(&mut self) {
         for event in self.engine.poll() {
             match &event {
+                // A word of a build that was given up.
+                Event::Loading { scene, .. } if self.asked.as_ref() != Some(scene) => continue,
                 Event::Opened(opened) => {
+                    let before = self.shown.opened.as_ref();
+                    if before.is_some_and(|before| before.scene != opened.scene) {
+                        self.leave();
+                    }
                     self.failed = None;
                     self.sent = None;
                     self.memory.opened(&opened.scene.path);
                 }
                 Event::OpenFailed { scene, .. } if *scene == self.model.scene => self.scene_failed(),
-                Event::Picture(rendered) => has_arrived |= rendered.side == Side::A,
+                Event::Picture(rendered) => self.has_arrived |= rendered.side == Side::A,
                 _ => {}
             }
             self.shown.take(event);
         }
-        has_arrived
+    }
+
+    /// Leaves what belongs to the scene that was shown so far: places, animations and moments fit no other.
+    fn leave(&mut self) {
+        for settings in &mut self.model.settings {
+            Bookmark::default().apply(settings);
+            (settings.animation, settings.time) = (Auto::Auto, Auto::Auto);
+        }
+        self.model.playback.is_playing = false;
+        self.history = History::default();
     }
 
     /// Goes back to the scene that is still shown, if there is one.

@@ -145,7 +145,8 @@ fn the_command_line_names_what_differs_and_the_plane() {
     desk.click("Copy as command line");
     let line = desk.app().copied().expect("the line is copied").to_owned();
     assert!(line.starts_with("ambray render atrium "), "{line}");
-    for part in ["--thin=sheet", "--exposure=0.1", "--spp=1", "--aov=depth", "-o ambray.png"] {
+    for part in ["--thin=sheet", "--exposure=0.1", "--spp=1", "--backend=cpu", "--aov=depth", "-o ambray.png"]
+    {
         assert!(line.contains(part), "{line} lacks {part}");
     }
     let size = desk.settings().size;
@@ -154,11 +155,31 @@ fn the_command_line_names_what_differs_and_the_plane() {
     let mut settings = Settings::default();
     for word in line.split(' ').filter_map(|word| word.strip_prefix("--")) {
         let (name, value) = word.split_once('=').unwrap();
-        if name != "aov" {
+        if !["aov", "backend"].contains(&name) {
             settings.set(name, value).unwrap();
         }
     }
     assert_eq!(&settings, desk.settings());
+}
+
+#[test]
+fn another_scene_is_looked_at_from_its_own_cameras() {
+    let mut desk = Desk::new();
+    desk.wait();
+    desk.app_mut().set("thin", "sheet").unwrap();
+    desk.app_mut().set("camera", "1").unwrap();
+    desk.app_mut().set("camera-position", "1,2,3").unwrap();
+    desk.step(2);
+    desk.app_mut().model.scene = SceneRef::new("banner");
+    desk.until(|app| {
+        app.shown.opened.as_ref().is_some_and(|opened| opened.scene.path.as_os_str() == "banner")
+    });
+    desk.wait();
+    for settings in &desk.app().model.settings {
+        assert_eq!((&settings.camera, &settings.camera_position), (&Auto::Auto, &Auto::Auto));
+    }
+    assert_eq!(desk.settings().thin, Thin::Sheet, "what fits every scene stays");
+    assert_eq!(desk.app().shown.refused, [Vec::<String>::new(), Vec::new()]);
 }
 
 #[test]

@@ -21,7 +21,8 @@ pub struct ViewArgs {
     /// Remember nothing, and begin as on the first day
     #[arg(long)]
     pub no_memory: bool,
-    /// Walk through the window by itself: a file with a step a line, listed below
+    /// Walk through the window by itself: a file with a step a line, listed below; nothing is remembered unless --memory says
+    /// where
     #[arg(long, value_name = "FILE")]
     pub script: Option<PathBuf>,
     /// Who renders.

@@ -34,7 +34,12 @@ pub fn run(args: &ViewArgs) -> anyhow::Result<()> {
         settings,
         renderer: args.backend.options(Grouping::Auto)?,
         threads: usize::from(args.threads),
-        memory: if args.no_memory { None } else { args.memory.clone().or_else(memory::default_path) },
+        // A script begins where every script begins, and leaves what the user has alone.
+        memory: match &args.memory {
+            _ if args.no_memory => None,
+            None if args.script.is_some() => None,
+            named => named.clone().or_else(memory::default_path),
+        },
         script: args.script.clone(),
         stop,
     })?;

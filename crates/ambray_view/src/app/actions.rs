@@ -116,7 +116,8 @@ impl App {
     /// The call of `ambray render` that makes the picture of `side`.
     #[must_use]
     pub fn command_line(&self, side: Side) -> String {
-        command::line(&self.model, &self.shown, side, self.frames(side))
+        // What cannot be rendered is not seen: the line is that of the picture.
+        command::line(&self.model, &self.shown, &self.valid[side as usize], self.frames(side))
     }
 
     const fn toggle_panels(&mut self) {

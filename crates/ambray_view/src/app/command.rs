@@ -1,22 +1,31 @@
 //! The command line that makes the picture that is seen.
 
-use ambray::{Aov, settings::Temporal};
+use ambray::{
+    Aov, Machine,
+    settings::{Settings, Temporal},
+};
 
 use super::Shown;
-use crate::model::{Model, Side};
+use crate::model::Model;
 
-/// The call of `ambray render` that makes the picture of `side`, which is the mean of `frames` frames; of its settings alone
-/// where that is 0 or 1.
-pub(super) fn line(model: &Model, shown: &Shown, side: Side, frames: u32) -> String {
-    let settings = model.of(side);
+/// The call of `ambray render` that makes the picture with `settings`, which is the mean of `frames` frames; of its settings
+/// alone where that is 0 or 1.
+pub(super) fn line(model: &Model, shown: &Shown, settings: &Settings, frames: u32) -> String {
     let mut more = Vec::new();
+    // Another backend rounds differently.
+    match shown.opened.as_ref().map(|opened| &opened.machine) {
+        Some(Machine::Cpu { reason: None, .. }) => more.push("--backend=cpu".to_owned()),
+        Some(Machine::Vulkan { .. }) => more.push("--backend=vulkan".to_owned()),
+        // The processor stepped in: it will again.
+        Some(Machine::Cpu { .. }) | None => {}
+    }
     if model.aov != Aov::Beauty {
         more.push(format!("--aov={}", model.aov.name()));
         more.extend(["-o".to_owned(), "ambray.png".to_owned()]);
     }
     // Frames that are accumulated: the last picture of the sequence is the one that is seen.
     if settings.temporal == Temporal::On && frames > 1 {
-        if let Some(name) = more.last_mut() {
+        if let Some(name) = more.last_mut().filter(|name| *name == "ambray.png") {
             "ambray_####.png".clone_into(name);
         }
         // They are counted from --frame on.

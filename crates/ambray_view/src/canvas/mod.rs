@@ -179,8 +179,12 @@ fn picture_size(resolution: Resolution, room: egui::Vec2) -> Size {
     }
 }
 
-/// Where the camera is; `None` while that is not known: before the first picture, and with another camera of the file.
+/// Where the camera is; `None` while that is not known: before the first picture of the scene, and with another camera of
+/// the file.
 fn viewpoint(model: &Model, shown: &Shown) -> Option<Viewpoint> {
+    if shown.is_stale[0] {
+        return None;
+    }
     let settings = model.of(model.editing);
     let rendered = shown.sides[0].as_ref()?;
     (rendered.settings.camera == settings.camera)

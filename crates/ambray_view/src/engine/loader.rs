@@ -36,6 +36,7 @@ pub(super) struct Ready {
 /// A scene on its way.
 #[derive(Debug)]
 struct Job {
+    scene: SceneRef,
     cancel: Arc<AtomicBool>,
     thread: JoinHandle<()>,
 }
@@ -80,11 +81,23 @@ impl Loader {
         state.jobs.retain(|job| !job.thread.is_finished());
         let work = move || loader.work(&asked, &flag);
         match std::thread::Builder::new().name("ambray-loader".to_owned()).spawn(work) {
-            Ok(thread) => state.jobs.push(Job { cancel, thread }),
+            Ok(thread) => state.jobs.push(Job { scene: scene.clone(), cancel, thread }),
             Err(error) => {
                 let message = format!("no thread to open it: {error}");
                 self.outbox.send(Event::OpenFailed { scene: scene.clone(), message });
             }
+        }
+    }
+
+    /// Opens `scene`, whose files have changed, again; unless another one is on its way, which takes its place anyway.
+    pub(super) fn reload(self: &Arc<Self>, scene: &SceneRef) {
+        let is_replaced = {
+            let state = lock(&self.state);
+            let on_its_way = |job: &&Job| !job.thread.is_finished() && !job.cancel.load(Ordering::Relaxed);
+            state.jobs.iter().find(on_its_way).is_some_and(|job| job.scene != *scene)
+        };
+        if !is_replaced {
+            self.open(scene);
         }
     }
 

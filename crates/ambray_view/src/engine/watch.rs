@@ -51,7 +51,7 @@ pub(super) fn run(loader: &Arc<Loader>, sender: &mpsc::Sender<Follow>, follow: &
                     continue;
                 }
                 match settle(current, follow) {
-                    Settled::Still => loader.open(&current.scene),
+                    Settled::Still => loader.reload(&current.scene),
                     Settled::Other(scene, files) => watched = Some(Watched::new(scene, &files, sender)),
                     Settled::Stop => return,
                 }

@@ -41,14 +41,15 @@ impl Store {
     /// nothing is remembered.
     #[must_use]
     pub fn open(path: PathBuf) -> (Self, Memory, Option<String>) {
-        let (memory, warning) = match read(&path) {
-            Ok(memory) => (memory, None),
+        let memory = match read(&path) {
+            Ok(memory) => memory,
+            // The file is left alone: someone may mend it.
             Err(error) => {
-                let warning = format!("what was remembered is ignored: {}: {error:#}", path.display());
-                (Memory::default(), Some(warning))
+                let warning = format!("nothing is remembered: {}: {error:#}", path.display());
+                return (Self::none(), Memory::default(), Some(warning));
             }
         };
-        (Self { path: Some(path), written: memory.clone(), ..Self::default() }, memory, warning)
+        (Self { path: Some(path), written: memory.clone(), ..Self::default() }, memory, None)
     }
 
     /// Writes `memory` in the background if it has changed and then stayed the same for a moment. The error is that of an
@@ -173,8 +174,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("view.toml");
         fs::write(&path, "recent = [\"a.glb\"]\nsettings = 3\n").unwrap();
-        let (_, memory, warning) = Store::open(path.clone());
+        let (mut store, memory, warning) = Store::open(path.clone());
         assert_eq!(memory, Memory::default());
+        assert_eq!(store.finish(&full()), None);
+        assert!(fs::read_to_string(&path).unwrap().contains("a.glb"), "the file is left alone");
         let warning = warning.expect("something is said");
         assert!(warning.contains("view.toml: line 2"), "{warning}");
         fs::write(&path, [0xff, 0xfe, 0]).unwrap();

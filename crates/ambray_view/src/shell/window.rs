@@ -27,7 +27,7 @@ use crate::{
     app::{App, Severity},
     engine::{Engine, EngineOptions, Wake as EngineWake},
     memory::{Memory, Store, WindowState},
-    model::Model,
+    model::{Model, Resolution, Side},
 };
 
 /// Size of the window where none is remembered, points.
@@ -69,6 +69,8 @@ impl Shell {
     pub(super) fn finish(self) -> anyhow::Result<Settings> {
         let mut settings = self.options.settings.unwrap_or_default();
         if let Some(mut open) = self.open {
+            // Nobody answers for it any more, and threads may take their time to end.
+            open.window.set_visible(false);
             if let Some(warning) = open.app.finish() {
                 log::warn!("{warning}");
             }
@@ -128,7 +130,13 @@ impl Shell {
             memory.settings.apply(&mut settings);
             settings
         });
-        let mut app = App::remembering(Model::new(options.scene.clone(), settings), engine, memory, store);
+        let mut model = Model::new(options.scene.clone(), settings);
+        // A size that was asked for is kept; the usual one stands for the window's.
+        let size = model.of(Side::A).size;
+        if size != Settings::default().size {
+            model.resolution = Resolution::Fixed(size);
+        }
+        let mut app = App::remembering(model, engine, memory, store);
         if let Some(warning) = warning {
             app.shown.notify(Severity::Warning, warning);
         }
@@ -287,7 +295,12 @@ impl ApplicationHandler<Wake> for Shell {
 
     fn user_event(&mut self, event_loop: &ActiveEventLoop, wake: Wake) {
         let at = match wake {
-            Wake::Engine => Instant::now(),
+            Wake::Engine => {
+                if let Some(open) = &mut self.open {
+                    open.app.hear();
+                }
+                Instant::now()
+            }
             Wake::Draw(at) => at,
             Wake::Stop => return event_loop.exit(),
         };
