@@ -181,6 +181,15 @@ fn ctrl_c_closes_the_window_and_leaves_no_file_half_written() {
 }
 
 #[test]
+fn without_a_graphics_card_the_window_opens_all_the_same() {
+    let Some(display) = Display::start() else { return };
+    let place = Place::new();
+    let output = place.walk(&display, &["--spp=1"], "wait\nscreenshot shown.png\n");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(place.path("shown.png").exists());
+}
+
+#[test]
 fn a_script_that_fails_names_its_line() {
     let Some(display) = Display::start() else { return };
     let place = Place::new();

@@ -309,8 +309,11 @@ impl ApplicationHandler<Wake> for Shell {
         }
     }
 
-    fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
-        self.attempt(event_loop, |open, event_loop| open.on_event(event_loop, &event));
+    fn window_event(&mut self, event_loop: &ActiveEventLoop, id: WindowId, event: WindowEvent) {
+        // A window that Vulkan could not draw into is gone, and still has something to say.
+        if self.open.as_ref().is_some_and(|open| open.window.id() == id) {
+            self.attempt(event_loop, |open, event_loop| open.on_event(event_loop, &event));
+        }
     }
 
     fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
