@@ -12,6 +12,7 @@ mod display;
 mod drawing;
 mod error;
 mod history;
+mod image;
 pub mod layout;
 mod memory;
 mod motion;

@@ -8,7 +8,7 @@ use gpu_allocator::{
     vulkan::{Allocation, AllocationCreateDesc, AllocationScheme},
 };
 
-use crate::{Buffer, Context, Recorder, Result, VulkanError, Work, error::MemorySide};
+use crate::{Buffer, Context, Recorder, Result, VulkanError, Work, error::MemorySide, image};
 
 /// An image with 8 bits each of red, green, blue and alpha, as display values (`R8G8B8A8_UNORM`, one level, one layer), in the
 /// layout `SHADER_READ_ONLY_OPTIMAL`. It can be sampled, and copied from by those who put the layout back.
@@ -27,13 +27,6 @@ pub struct Picture {
 
 const NAME: &str = "picture for a window";
 const FORMAT: vk::Format = vk::Format::R8G8B8A8_UNORM;
-const COLOR: vk::ImageSubresourceRange = vk::ImageSubresourceRange {
-    aspect_mask: vk::ImageAspectFlags::COLOR,
-    base_mip_level: 0,
-    level_count: 1,
-    base_array_layer: 0,
-    layer_count: 1,
-};
 
 impl Picture {
     /// A picture with undefined content, in no layout yet.
@@ -98,14 +91,7 @@ impl Picture {
         // bound to nothing yet.
         unsafe { device.bind_image_memory(self.image, allocation.memory(), allocation.offset()) }
             .map_err(|result| VulkanError::at("vkBindImageMemory", NAME, bytes, result))?;
-        let info = vk::ImageViewCreateInfo::default()
-            .image(self.image)
-            .view_type(vk::ImageViewType::TYPE_2D)
-            .format(FORMAT)
-            .subresource_range(COLOR);
-        // SAFETY: the image is of this device, bound, and has the format and the range.
-        self.view =
-            unsafe { device.create_image_view(&info, None) }.map_err(VulkanError::of("vkCreateImageView"))?;
+        self.view = image::view(&self.context, self.image, FORMAT)?;
         self.context.name(self.image, NAME);
         self.context.name(self.view, NAME);
         Ok(())
@@ -203,15 +189,7 @@ impl Recorder<'_> {
         let (pipelines, queries) = (context.has_pipelines(), context.has_queries());
         let (from, wrote) = before.0.mask(pipelines, queries);
         let (to, touches) = after.0.mask(pipelines, queries);
-        let barrier = vk::ImageMemoryBarrier::default()
-            .src_access_mask(wrote)
-            .dst_access_mask(touches)
-            .old_layout(before.1)
-            .new_layout(after.1)
-            .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-            .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-            .image(picture.image)
-            .subresource_range(COLOR);
+        let barrier = image::transition(picture.image, [before.1, after.1], [wrote, touches]);
         // SAFETY: the buffer is being recorded, outside of render passes; the image is alive and in the old layout.
         unsafe {
             context.device.cmd_pipeline_barrier(
@@ -230,14 +208,11 @@ impl Recorder<'_> {
 /// All of a picture, tightly packed in a buffer.
 fn whole(picture: &Picture) -> vk::BufferImageCopy {
     let (width, height) = picture.size;
-    vk::BufferImageCopy::default()
-        .image_subresource(vk::ImageSubresourceLayers {
-            aspect_mask: vk::ImageAspectFlags::COLOR,
-            mip_level: 0,
-            base_array_layer: 0,
-            layer_count: 1,
-        })
-        .image_extent(vk::Extent3D { width, height, depth: 1 })
+    vk::BufferImageCopy::default().image_subresource(image::whole_layer()).image_extent(vk::Extent3D {
+        width,
+        height,
+        depth: 1,
+    })
 }
 
 /// Pictures of one size, painted again when their holders are done with them.

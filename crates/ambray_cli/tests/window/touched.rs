@@ -175,3 +175,18 @@ fn keys_the_mouse_and_the_cross_of_the_window_work() {
     let memory = std::fs::read_to_string(place.path("memory/view.toml")).expect("what was remembered");
     assert!(memory.contains("width = 1440"), "{memory}");
 }
+
+#[test]
+fn a_script_whose_window_is_closed_has_failed() {
+    let Some(display) = Display::start() else { return };
+    let place = Place::new();
+    std::fs::write(place.path("walk.txt"), "set spp 60000\nwait\nscreenshot never.png\n").expect("script");
+    let arguments = ["--script", "walk.txt", "--backend", "cpu"];
+    let mut command = place.view(&display, &arguments);
+    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts");
+    Touched::find(&display).close();
+    let output = finish(child);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains(": the window was closed here, before the script was done"), "{said}");
+}

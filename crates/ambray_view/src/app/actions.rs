@@ -33,9 +33,10 @@ impl App {
                 self.engine.export(Export::Turntable { path, settings, aov: self.model.aov, frames, fps });
             }
             Action::CancelExport => self.engine.cancel_export(),
-            Action::Quit => {
-                self.is_quitting = true;
-                ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+            Action::Quit => self.is_quitting = true,
+            Action::ToggleFullscreen => {
+                let is_full = ctx.input(|input| input.viewport().fullscreen).unwrap_or(false);
+                ctx.send_viewport_cmd(egui::ViewportCommand::Fullscreen(!is_full));
             }
             Action::Undo => self.undo(),
             Action::Redo => self.redo(),
@@ -82,13 +83,7 @@ impl App {
     }
 
     fn keep_bookmark(&mut self, digit: u8) {
-        let settings = self.model.edited();
-        let mut bookmark = Bookmark::of(settings);
-        // An automatic camera is one of this file and this aspect ratio: kept as it is, it always comes back.
-        if bookmark == Bookmark::default() {
-            bookmark.camera = settings.camera.clone();
-        }
-        self.model.bookmarks.insert(digit, bookmark);
+        self.model.bookmarks.insert(digit, Bookmark::of(self.model.edited()));
         self.shown.notify(Severity::Done, format!("View {digit} is kept: press {digit} to come back"));
     }
 

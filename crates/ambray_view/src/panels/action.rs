@@ -44,6 +44,8 @@ pub enum Action {
     Copy(Side),
     /// Show or hide the side panels.
     TogglePanels,
+    /// Let the window fill the screen, or give it back its size.
+    ToggleFullscreen,
     /// Show or hide the help.
     ToggleHelp,
     /// Play or pause the animation.

@@ -70,6 +70,7 @@ pub const SHORTCUTS: &[Shortcut] = &[
     shortcut(".", "Step the animation forward", &[Trigger::Key(NONE, Key::Period)], |_| Action::Step(1)),
     shortcut(",", "Step the animation back", &[Trigger::Key(NONE, Key::Comma)], |_| Action::Step(-1)),
     shortcut("Tab", "Show or hide the panels", &[Trigger::Key(NONE, Key::Tab)], |_| Action::TogglePanels),
+    shortcut("F11", "Fill the screen, or not", &[Trigger::Key(NONE, Key::F11)], |_| Action::ToggleFullscreen),
     shortcut("Shift+1 to 9", "Keep the view under the digit", &[Trigger::Digit(SHIFT)], Action::Keep),
     shortcut("1 to 9", "Go back to the view of the digit", &[Trigger::Digit(NONE)], Action::Recall),
     shortcut(
@@ -100,11 +101,11 @@ pub fn pressed(ctx: &egui::Context) -> Vec<Action> {
 }
 
 fn action_of(event: &Event, is_typing: bool) -> Option<Action> {
-    let Event::Key { key, physical_key, pressed: true, modifiers, .. } = event else { return None };
-    if is_typing && !modifiers.command && !matches!(key, Key::F1 | Key::F5) {
+    let Event::Key { key, physical_key, pressed: true, repeat, modifiers } = event else { return None };
+    if is_typing && !modifiers.command && !matches!(key, Key::F1 | Key::F5 | Key::F11) {
         return None;
     }
-    SHORTCUTS.iter().find_map(|shortcut| {
+    let action = SHORTCUTS.iter().find_map(|shortcut| {
         let digit = shortcut.triggers.iter().find_map(|trigger| match *trigger {
             Trigger::Key(wanted, wanted_key) => {
                 (*key == wanted_key && matches(*modifiers, wanted, wanted_key)).then_some(0)
@@ -117,7 +118,10 @@ fn action_of(event: &Event, is_typing: bool) -> Option<Action> {
                 .map(|i| i as u8 + 1),
         })?;
         Some((shortcut.action)(digit))
-    })
+    })?;
+    // What goes there and back would flicker while its key is held.
+    let goes_on = matches!(action, Action::Step(_) | Action::Undo | Action::Redo);
+    (!repeat || goes_on).then_some(action)
 }
 
 fn matches(modifiers: Modifiers, wanted: Modifiers, key: Key) -> bool {
@@ -137,6 +141,10 @@ mod tests {
     fn keys_do_what_the_list_says() {
         assert_eq!(press(Key::O, None, CTRL), Some(Action::Ask(Question::Scene)));
         assert_eq!(press(Key::O, None, NONE), None);
+        assert_eq!(press(Key::F11, None, NONE), Some(Action::ToggleFullscreen));
+        let held = |key| Event::Key { key, physical_key: None, pressed: true, repeat: true, modifiers: NONE };
+        assert_eq!(action_of(&held(Key::F11), false), None);
+        assert_eq!(action_of(&held(Key::Period), false), Some(Action::Step(1)));
         assert_eq!(press(Key::S, None, CTRL), Some(Action::Ask(Question::Screenshot)));
         assert_eq!(press(Key::S, None, CTRL.plus(SHIFT)), Some(Action::Ask(Question::Save)));
         assert_eq!(press(Key::Z, None, CTRL), Some(Action::Undo));

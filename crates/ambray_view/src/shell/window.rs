@@ -7,14 +7,13 @@ use std::{
 
 use ambray::settings::Settings;
 use anyhow::Context as _;
-use egui::{ViewportEvent, ViewportId, ViewportInfo};
+use egui::{ViewportId, ViewportInfo};
 use winit::{
     application::ApplicationHandler,
     dpi::LogicalSize,
-    event::{ElementState, KeyEvent, WindowEvent},
+    event::WindowEvent,
     event_loop::{ActiveEventLoop, ControlFlow, EventLoopProxy},
-    keyboard::{Key, NamedKey},
-    window::{Fullscreen, Window, WindowAttributes, WindowId},
+    window::{Window, WindowAttributes, WindowId},
 };
 
 use super::{
@@ -75,6 +74,9 @@ impl Shell {
                 log::warn!("{warning}");
             }
             settings = open.app.model.of(open.app.model.editing).clone();
+            if let (None, Some(script)) = (&self.failure, &open.script) {
+                script.check_done()?;
+            }
         }
         self.failure.map_or(Ok(settings), Err)
     }
@@ -212,7 +214,7 @@ impl Open {
         }
         self.retitle();
         self.remember_size();
-        if self.info.events.contains(&ViewportEvent::Close) || self.app.is_quitting() {
+        if self.app.is_quitting() {
             event_loop.exit();
         }
         if let Some(script) = &mut self.script {
@@ -235,19 +237,6 @@ impl Open {
             WindowEvent::RedrawRequested => return self.draw(event_loop),
             WindowEvent::CloseRequested | WindowEvent::Destroyed => event_loop.exit(),
             WindowEvent::Resized(size) => self.presenter.resize(*size),
-            WindowEvent::KeyboardInput {
-                event:
-                    KeyEvent {
-                        logical_key: Key::Named(NamedKey::F11),
-                        state: ElementState::Pressed,
-                        repeat: false,
-                        ..
-                    },
-                ..
-            } => {
-                let is_full = self.window.fullscreen().is_some();
-                self.window.set_fullscreen((!is_full).then_some(Fullscreen::Borderless(None)));
-            }
             _ => {}
         }
         if self.system.on_window_event(&self.window, event).repaint {
@@ -302,7 +291,14 @@ impl ApplicationHandler<Wake> for Shell {
                 Instant::now()
             }
             Wake::Draw(at) => at,
-            Wake::Stop => return event_loop.exit(),
+            Wake::Stop => {
+                // Its steps that are left are not missed.
+                self.script = None;
+                if let Some(open) = &mut self.open {
+                    open.script = None;
+                }
+                return event_loop.exit();
+            }
         };
         if let Some(open) = &mut self.open {
             open.draw_by(at);

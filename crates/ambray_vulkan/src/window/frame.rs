@@ -6,12 +6,14 @@ use ash::vk;
 
 use super::{
     Copy, Painting,
-    image::{transition, whole_layer},
     painter::Painter,
     swapchain::Target,
     textures::{Keep, Textures},
 };
-use crate::{Buffer, CommandSet, Context, Location, Recorder, Result, VulkanError, Work};
+use crate::{
+    Buffer, CommandSet, Context, Location, Recorder, Result, VulkanError, Work,
+    image::{transition, whole_layer},
+};
 
 /// A frame that the device may be drawing.
 pub(super) struct InFlight {

@@ -4,7 +4,6 @@
 //! own size reaches the window byte for byte. The context must have been opened [for the window](crate::Context::for_window).
 
 mod frame;
-mod image;
 mod painter;
 mod swapchain;
 mod textures;

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use ash::{khr, vk};
 
-use super::{image, missing};
+use super::missing;
 use crate::context::Surface;
-use crate::{Context, Result, VulkanError};
+use crate::{Context, Result, VulkanError, image};
 
 /// Images of the window, made anew when its size changes.
 pub(super) struct Swapchain {

@@ -5,11 +5,13 @@ use std::{any::Any, collections::HashMap, sync::Arc};
 use ash::vk;
 
 use super::{
-    image::{transition, whole_layer},
     missing,
     painter::{Descriptor, Painter},
 };
-use crate::{Buffer, Context, Location, Picture, Recorder, Result};
+use crate::{
+    Buffer, Context, Location, Picture, Recorder, Result,
+    image::{transition, whole_layer},
+};
 
 /// How a texture is looked up between its pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -94,6 +94,17 @@ impl Runner {
         Ok(())
     }
 
+    /// Once the window is closed.
+    ///
+    /// # Errors
+    /// If there were steps left to be done.
+    pub(in crate::shell) fn check_done(&self) -> anyhow::Result<()> {
+        if self.doing.is_some() || !self.script.steps.is_empty() {
+            bail!("{}: the window was closed here, before the script was done", self.place());
+        }
+        Ok(())
+    }
+
     /// Adds the events of this frame to what egui hears.
     pub(in crate::shell) fn add_input(&mut self, input: &mut RawInput) {
         if let Some(Doing::Events(frames)) = &mut self.doing {
@@ -156,7 +167,7 @@ impl Runner {
 
     /// Does what `step` says; `None` if that was all.
     fn begin(
-        &self,
+        &mut self,
         step: Step,
         app: &mut App,
         window: &Window,
@@ -217,7 +228,7 @@ impl Runner {
             Step::ExpectError(text) => return expect_error(app, Some(&text)).map(|()| None),
             Step::ExpectNoError => return expect_error(app, None).map(|()| None),
             Step::Quit => {
-                system.egui_ctx().send_viewport_cmd(egui::ViewportCommand::Close);
+                self.script.steps.clear();
                 return Ok(None);
             }
             Step::Key { key, modifiers, text } => input::key(key, modifiers, text.as_deref()),

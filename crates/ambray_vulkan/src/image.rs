@@ -8,7 +8,7 @@ use crate::{
 };
 
 /// The only level of a colour image.
-pub(super) const fn whole() -> vk::ImageSubresourceRange {
+pub(crate) const fn whole() -> vk::ImageSubresourceRange {
     vk::ImageSubresourceRange {
         aspect_mask: vk::ImageAspectFlags::COLOR,
         base_mip_level: 0,
@@ -19,7 +19,7 @@ pub(super) const fn whole() -> vk::ImageSubresourceRange {
 }
 
 /// The same, to be copied from or to.
-pub(super) const fn whole_layer() -> vk::ImageSubresourceLayers {
+pub(crate) const fn whole_layer() -> vk::ImageSubresourceLayers {
     vk::ImageSubresourceLayers {
         aspect_mask: vk::ImageAspectFlags::COLOR,
         mip_level: 0,
@@ -29,7 +29,7 @@ pub(super) const fn whole_layer() -> vk::ImageSubresourceLayers {
 }
 
 /// The way of `image` from a layout and its last access to the next ones, on one queue.
-pub(super) fn transition(
+pub(crate) fn transition(
     image: vk::Image,
     layouts: [vk::ImageLayout; 2],
     accesses: [vk::AccessFlags; 2],
@@ -46,7 +46,7 @@ pub(super) fn transition(
 }
 
 /// A view of the whole of `image`, to be destroyed by the caller.
-pub(super) fn view(context: &Context, image: vk::Image, format: vk::Format) -> Result<vk::ImageView> {
+pub(crate) fn view(context: &Context, image: vk::Image, format: vk::Format) -> Result<vk::ImageView> {
     let info = vk::ImageViewCreateInfo::default()
         .image(image)
         .view_type(vk::ImageViewType::TYPE_2D)
