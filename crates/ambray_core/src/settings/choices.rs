@@ -71,6 +71,40 @@ macro_rules! choices {
 }
 
 choices! {
+    /// Who finds how open a pixel is: Ambray, or one of the methods that it is compared with.
+    Method {
+        /// interleaved rays, by the other settings
+        #[default]
+        Ambray,
+        /// rays as Ambray's, but independent random directions in every pixel
+        TracedRandom,
+        /// rays as Ambray's, but one set of directions for all pixels
+        TracedSame,
+        /// rays as Ambray's, but every hit within the radius blocks fully
+        TracedStep,
+        /// screen-space ambient occlusion with a hemisphere of samples (Mittring 2007, Chapman 2013)
+        Ssao,
+        /// horizon-based ambient occlusion (Bavoil and Sainz 2008)
+        Hbao,
+        /// ground-truth ambient occlusion as in XeGTAO (Jimenez et al. 2016, Strugar 2021)
+        Gtao,
+        /// ambient occlusion by a visibility bitmask, for surfaces of some thickness (Therrien et al. 2023)
+        Bitmask,
+        /// screen-space rays, and traced ones where the depth buffer cannot know (Bavoil et al. 2018)
+        Hybrid,
+    }
+    /// Samples that the screen-space methods take.
+    ScreenQuality {
+        /// a third or less of what was published as good
+        Low,
+        /// between low and high
+        Medium,
+        /// the published default
+        #[default]
+        High,
+        /// several times that
+        Ultra,
+    }
     /// Kind of the fuzzy measure μ(d) (spec §2).
     Falloff {
         /// (d/R)^exponent, 1 from the radius on

@@ -7,6 +7,7 @@
 mod choices;
 mod domains;
 mod field;
+mod method;
 mod preset;
 mod spelling;
 mod table;
@@ -14,8 +15,8 @@ mod validate;
 mod values;
 
 pub use choices::{
-    Falloff, FilterTest, NearRadiance, Normals, Preset, RadianceSource, Ramp, Sampling, Sequence, Temporal,
-    Thin, ThinMinimum, ToneMap, Window,
+    Falloff, FilterTest, Method, NearRadiance, Normals, Preset, RadianceSource, Ramp, Sampling,
+    ScreenQuality, Sequence, Temporal, Thin, ThinMinimum, ToneMap, Window,
 };
 pub use field::{Field, Kind, SetError, Value};
 pub use table::{Settings, SettingsPatch};

@@ -3,8 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Auto, Falloff, Field, FilterTest, NearRadiance, Normals, RadianceSource, Ramp, Range, Rgb, Sampling,
-    Sequence, SetError, SettingsError, Size, Temporal, Thin, ThinMinimum, ToneMap, Triple, Window, domains,
+    Auto, Falloff, Field, FilterTest, Method, NearRadiance, Normals, RadianceSource, Ramp, Range, Rgb,
+    Sampling, ScreenQuality, Sequence, SetError, SettingsError, Size, Temporal, Thin, ThinMinimum, ToneMap,
+    Triple, Window, domains,
     field::{Domain, Value},
     spelling::kebab,
 };
@@ -171,6 +172,16 @@ settings! {
     ambient: Auto<Rgb> = Auto::Auto, "R,G,B" in AUTO_COLOR;
     /// Colour where no surface is seen, linear RGB, or auto (the ambient radiance if one is set, else grey)
     background: Auto<Rgb> = Auto::Auto, "R,G,B" in AUTO_COLOR;
+
+    ["Method"]
+    /// Who finds openness: Ambray, or a method to compare it with
+    #[arg(value_enum)]
+    method: Method = Method::Ambray, "METHOD";
+    /// Samples of the methods ssao, hbao, gtao, bitmask and hybrid
+    #[arg(value_enum)]
+    screen_quality: ScreenQuality = ScreenQuality::High, "QUALITY";
+    /// Thickness of what the depth buffer shows for bitmask and hybrid, scene units, or auto (a quarter of the radius)
+    thickness: Auto<f32> = Auto::Auto, "LENGTH" in AUTO_LENGTH;
 
     ["Colour bleeding"]
     /// How near-field radiance is estimated from the hits

@@ -26,6 +26,7 @@ impl Settings {
             let allowed = "1 to 256 with thin paper, which joins all pairs of missed rays";
             errors.push(SettingsError { name: "spp", value: self.spp.to_string(), allowed });
         }
+        errors.extend(self.method_errors());
         if let (Some(_), Some(height)) = (self.vertical_fov.value(), self.orthographic_height.value()) {
             let allowed = "auto where vertical-fov is set";
             errors.push(SettingsError { name: "orthographic-height", value: height.to_string(), allowed });

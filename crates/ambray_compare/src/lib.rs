@@ -1,0 +1,4 @@
+//! Ambray against the truth and against other methods.
+#![forbid(unsafe_code)]
+
+pub mod document;
