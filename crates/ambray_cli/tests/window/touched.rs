@@ -137,8 +137,9 @@ impl Touched {
     /// Sends the window a message.
     pub(crate) fn tell(&self, message: &str, data: [u32; 5]) {
         let message = ClientMessageEvent::new(32, self.window, self.atom(message), data);
-        self.server.send_event(false, self.window, EventMask::NO_EVENT, message).expect("sent");
-        self.server.flush().expect("sent");
+        // Waits for the server: what a client that is gone had sent may be lost.
+        let sent = self.server.send_event(false, self.window, EventMask::NO_EVENT, message);
+        sent.expect("sent").check().expect("taken");
     }
 }
 
