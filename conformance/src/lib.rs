@@ -1,7 +1,6 @@
-//! What the tests of whole pictures share: where the scenes are, the measures of spec §10, and the views of spec §11.
+//! What the tests of whole pictures share: where the scenes are, and the views of spec §11.
 
 pub mod backends;
-pub mod metrics;
 pub mod moving;
 pub mod parity;
 pub mod scenes;

@@ -7,7 +7,7 @@ use ambray_core::{
 use ambray_scene::{AlphaMode, Scene};
 use glam::Vec4;
 
-use crate::metrics::Map;
+use ambray_metrics::Map;
 
 /// A camera of spec §11.
 #[derive(Clone, Copy, Debug)]

@@ -2,8 +2,8 @@
 
 use ambray::{Control, Frame, Renderer};
 use ambray_core::settings::{Sampling, Settings, Window};
+use ambray_metrics::{Map, edges, flip, masked_rmse, pattern_left, psnr, rmse};
 use conformance::{
-    metrics::{Map, edges, flip, masked_rmse, pattern_left, psnr, rmse},
     shared,
     views::{self, SPONZA, View},
 };

@@ -6,10 +6,8 @@ use ambray::{
     vulkan::TraceMode,
 };
 use ambray_core::settings::{Auto, Sampling, Settings, Size, Temporal, Triple, Window};
-use conformance::{
-    metrics::{Map, changed, flicker, masked_rmse, rmse},
-    moving, parity, shared, views,
-};
+use ambray_metrics::{Map, changed, flicker, masked_rmse, rmse};
+use conformance::{moving, parity, shared, views};
 
 const FPS: f32 = 30.0;
 /// Frames after which hardly anything is left of an occluder that is gone, as `docs/method.md` says.
