@@ -41,7 +41,7 @@ fn errors(reference: [&Map; 3], test: [&Map; 3]) -> Map {
 }
 
 fn image([red, green, blue]: [&Map; 3]) -> nv_flip::FlipImageRgb8 {
-    let byte = |v: f32| (v.clamp(0.0, 1.0) * 255.0).round() as u8;
+    let byte = |v: f32| (v * 255.0 + 0.5) as u8; // as `display::Picture` rounds; the cast clips
     let pixels = red.values.iter().zip(&green.values).zip(&blue.values);
     let bytes: Vec<u8> = pixels.flat_map(|((&r, &g), &b)| [r, g, b].map(byte)).collect();
     nv_flip::FlipImageRgb8::with_data(red.width as u32, red.height() as u32, &bytes)

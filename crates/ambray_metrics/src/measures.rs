@@ -201,7 +201,7 @@ mod tests {
         assert!(!json.contains("grain"), "{json}");
         assert_eq!(serde_json::from_str::<Measures>(&json).unwrap(), measures);
         assert_eq!(measures.psnr, Some(f64::INFINITY));
-        let bare = Measures::of_values(&[same.clone()], &[same]);
+        let bare = Measures::of_values(std::slice::from_ref(&same), std::slice::from_ref(&same));
         let json = serde_json::to_string(&bare).unwrap();
         assert_eq!(serde_json::from_str::<Measures>(&json).unwrap(), bare, "{json}");
     }
