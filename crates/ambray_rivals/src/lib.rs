@@ -6,6 +6,12 @@
 //! functions of the [`Screen`], the seed and the frame number: the same bits for any number of threads.
 #![forbid(unsafe_code)]
 
+mod blur;
+mod hbao;
 mod screen;
+mod ssao;
+mod tile;
 
+pub use hbao::Hbao;
 pub use screen::Screen;
+pub use ssao::Ssao;
