@@ -156,7 +156,7 @@ fn what_is_far_in_front_casts_a_halo() {
     // coordinate of a direction is even in [−1, 1] (but for the corners of the box), so they are the share (1 − δ E[1/s])/2;
     // with s = 0.1 + 0.9 u², E[1/s] = atan(3)/0.3 = 4.16, and openness is 1 − 0.448/2 = 0.776.
     let scene = Scene(vec![Shape::level(0.0, -50.0, 50.0), Shape::level(2.0, -50.0, 0.0)]);
-    let camera = parallel(DVec3::new(0.0, 5.0, 0.0), DOWN, (80, 24), 20.0);
+    let camera = parallel(DVec3::new(0.0, 5.0, 0.0), DOWN, (80, 60), 20.0);
     let values = |seed| raw(&default(), &see(&scene, camera, 1.0, &Settings { seed, ..truth() }).screen);
     let seen = see(&scene, camera, 1.0, &truth());
     let halo = (0..32).map(|seed| column(&seen, &values(seed), 40)).sum::<f64>() / 32.0;
