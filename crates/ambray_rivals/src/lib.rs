@@ -8,10 +8,12 @@
 
 mod blur;
 mod hbao;
+mod hybrid;
 mod screen;
 mod ssao;
 mod tile;
 
 pub use hbao::Hbao;
+pub use hybrid::{Hybrid, HybridEstimate};
 pub use screen::Screen;
 pub use ssao::Ssao;

@@ -1,0 +1,192 @@
+//! A ray followed through the depth buffer.
+
+use ambray_core::{
+    camera::{Camera, Projection},
+    frame::GBufferPixel,
+    sampling::{pcg, unit_float},
+    trace::Ray,
+};
+use glam::{Vec2, Vec3};
+
+/// Halvings of the step in which a ray went behind something: to 1/64 of it.
+const REFINEMENTS: u32 = 6;
+
+/// Share of its depth to which a ray is followed towards a perspective camera; what comes closer has left the picture, or
+/// is in front of everything seen there.
+const NEAR: f32 = 1e-3;
+
+/// Reach of a ray without end, in widths or heights of the picture where it starts.
+const FAR: f32 = 1e3;
+
+/// What the depth buffer knows about a ray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Verdict {
+    /// It meets what is seen, at this distance.
+    Hit(f32),
+    /// It stays in front of everything that is seen, to its end.
+    Miss,
+    /// It leaves the picture or goes behind something: a traced ray has to tell.
+    Unknown,
+}
+
+/// The surfaces that the camera sees.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct DepthBuffer<'a> {
+    pub(super) camera: &'a Camera,
+    pub(super) gbuffer: &'a [GBufferPixel],
+    /// Steps of a ray, at most.
+    pub(super) steps: u32,
+    /// How far behind the edge of what is seen a ray still hits it, scene units of depth.
+    pub(super) thickness: f32,
+}
+
+/// The part of a ray inside the picture. It is a line there, along which s goes from 0 to 1.
+struct Segment {
+    ray: Ray,
+    /// Places of its ends, pixels.
+    from: Vec2,
+    to: Vec2,
+    /// Distance that belongs to s = 1.
+    length: f32,
+    /// Footprints of a pixel at the ends: their ratio is that of the depths, or 1 in parallel projection.
+    footprints: [f32; 2],
+    /// Where it leaves the picture; 1 or more if it does not.
+    leaves: f32,
+}
+
+impl Segment {
+    /// Distance along the ray at `s`: hyperbolic in perspective (McGuire and Mara 2014, "Efficient GPU screen-space ray
+    /// tracing", interpolate in homogeneous coordinates for the same reason).
+    fn distance(&self, s: f32) -> f32 {
+        let [start, end] = self.footprints;
+        self.length * s * start / ((1.0 - s) * end + s * start)
+    }
+
+    fn pixel(&self, s: f32) -> Vec2 {
+        self.from + (self.to - self.from) * s
+    }
+
+    /// Where it is looked at: ever farther apart, so that what is near counts most, the last place at its end.
+    fn places(&self, steps: u32) -> impl Iterator<Item = f32> {
+        let end = self.leaves.min(1.0);
+        let pixels = (self.to - self.from).length() * end;
+        // The last step is twice the mean one: a pixel is looked at twice or more, where there are steps enough.
+        let count = (steps as f32).min((4.0 * pixels).ceil()).max(1.0) as u32;
+        let jitter = unit_float(pcg(self.ray.seed));
+        (1..=count).map(move |i| {
+            let share = if i == count { 1.0 } else { (i as f32 - jitter) / count as f32 };
+            end * share * share
+        })
+    }
+}
+
+/// A place on a ray that is behind what is seen there.
+struct Behind<'a> {
+    s: f32,
+    /// What is seen there.
+    seen: &'a GBufferPixel,
+    /// Signed distance from its tangent plane, below 0.
+    height: f32,
+}
+
+impl<'a> DepthBuffer<'a> {
+    /// Follows `ray`, which starts on something seen.
+    pub(super) fn march(&self, ray: &Ray) -> Verdict {
+        let Some(segment) = self.segment(ray) else { return Verdict::Unknown };
+        let mut front = 0.0;
+        for s in segment.places(self.steps) {
+            if let Some(behind) = self.behind(&segment, s) {
+                return self.crossing(&segment, front, behind);
+            }
+            front = s;
+        }
+        if segment.leaves < 1.0 { Verdict::Unknown } else { Verdict::Miss }
+    }
+
+    /// The part of `ray` in front of the camera, as it goes over the picture; `None` if it does not start there.
+    fn segment(&self, ray: &Ray) -> Option<Segment> {
+        let (from, depth) = self.camera.project(ray.origin)?;
+        let (width, height) = self.camera.size();
+        let far = FAR * self.camera.footprint(depth) * width.max(height) as f32;
+        let approach = -ray.direction.dot(self.camera.forward());
+        let near = match self.camera.projection() {
+            Projection::Perspective { .. } if approach > 0.0 => (1.0 - NEAR) * depth / approach,
+            _ => f32::INFINITY,
+        };
+        let length = ray.t_max.min(far).min(near);
+        let (to, end_depth) = self.camera.project(ray.origin + ray.direction * length)?;
+        let footprints = [self.camera.footprint(depth), self.camera.footprint(end_depth)];
+        let leaves = leaves(from, to, Vec2::new(width as f32, height as f32))?;
+        // A ray cut off before the eye has not been followed to its end.
+        let leaves = if near < ray.t_max { leaves.min(1.0 - f32::EPSILON) } else { leaves };
+        Some(Segment { ray: *ray, from, to, length, footprints, leaves })
+    }
+
+    /// What the ray is behind at `s`; `None` if it is in front of what is seen there.
+    ///
+    /// A pixel shows a piece of a plane, through its own point with its geometric normal. So rays over a plane never go behind
+    /// it, however coarse the pixels are.
+    fn behind(&self, segment: &Segment, s: f32) -> Option<Behind<'a>> {
+        let (width, height) = self.camera.size();
+        let pixel =
+            segment.pixel(s).round().clamp(Vec2::ZERO, Vec2::new((width - 1) as f32, (height - 1) as f32));
+        let seen = &self.gbuffer[pixel.y as usize * width as usize + pixel.x as usize];
+        if !seen.is_surface() {
+            return None;
+        }
+        let at = segment.ray.origin + segment.ray.direction * segment.distance(s);
+        let height = seen.geometric_normal.dot(at - seen.position);
+        (height < 0.0).then_some(Behind { s, seen, height })
+    }
+
+    /// What happened between `front`, where the ray was in front of what is seen, and `behind`.
+    fn crossing(&self, segment: &Segment, mut front: f32, mut behind: Behind<'a>) -> Verdict {
+        for _ in 0..REFINEMENTS {
+            let middle = 0.5 * (front + behind.s);
+            match self.behind(segment, middle) {
+                Some(nearer) => behind = nearer,
+                None => front = middle,
+            }
+        }
+        let (before, after) = (segment.distance(front), segment.distance(behind.s));
+        // Through the plane of what is seen: the hit is there, unless that is a pixel's width off the step.
+        let steepness = -behind.seen.geometric_normal.dot(segment.ray.direction);
+        let through = after + behind.height / steepness;
+        if steepness > 0.0 && through >= before - (after - before) {
+            return Verdict::Hit(through.max(0.0));
+        }
+        // Past an edge of what is seen: into its side if it is thick enough.
+        if self.is_within(&segment.ray, &behind, after) { Verdict::Hit(after) } else { Verdict::Unknown }
+    }
+
+    /// Whether `ray` is inside what is seen at `distance`, its thickness being as given: deeper than its front by more than
+    /// that may be wrong within a pixel, as beside the outline of a ball, whose planes reach past it.
+    fn is_within(&self, ray: &Ray, behind: &Behind<'_>, distance: f32) -> bool {
+        let at = ray.origin + ray.direction * distance;
+        let (sight, normal) = (self.sight(at), behind.seen.geometric_normal);
+        let facing = -normal.dot(sight);
+        let depth = -behind.height / facing;
+        let tangent = normal.cross(sight).length() / facing;
+        facing > 0.0 && depth > tangent * self.camera.footprint(behind.seen.depth) && depth <= self.thickness
+    }
+
+    /// Direction in which the camera sees the point `at`, per unit of depth.
+    fn sight(&self, at: Vec3) -> Vec3 {
+        match self.camera.projection() {
+            Projection::Perspective { .. } => (at - self.camera.position()) / self.camera.depth(at),
+            Projection::Orthographic { .. } => self.camera.forward(),
+        }
+    }
+}
+
+/// Share of the way from `from` to `to` at which it leaves a picture of `size` pixels; `None` if it starts outside.
+fn leaves(from: Vec2, to: Vec2, size: Vec2) -> Option<f32> {
+    let (low, high) = (Vec2::splat(-0.5), size - 0.5);
+    let starts_inside = from.cmpge(low).all() && from.cmple(high).all();
+    let along = |from: f32, to: f32, low: f32, high: f32| {
+        let way = to - from;
+        let border = if way < 0.0 { low } else { high };
+        if way == 0.0 { f32::INFINITY } else { (border - from) / way }
+    };
+    starts_inside.then(|| along(from.x, to.x, low.x, high.x).min(along(from.y, to.y, low.y, high.y)))
+}
