@@ -149,7 +149,7 @@ impl<'a> DepthBuffer<'a> {
             }
         }
         let (before, after) = (segment.distance(front), segment.distance(behind.s));
-        // Through the plane of what is seen: the hit is there, unless that is a pixel's width off the step.
+        // Through the plane of what is seen: the hit is there, unless that is long before, where something else was seen.
         let steepness = -behind.seen.geometric_normal.dot(segment.ray.direction);
         let through = after + behind.height / steepness;
         if steepness > 0.0 && through >= before - (after - before) {
