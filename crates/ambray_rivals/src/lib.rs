@@ -1,18 +1,20 @@
 //! Ambient occlusion as others do it, to compare Ambray with: each method after its publication, with the filter that it is
 //! usually shown with, for the same camera and G-buffer.
 //!
-//! A method is a struct of its published parameters: its `estimate` is the
-//! openness of every pixel (1 = open) before its filter, `filter` what its filter makes of that. All are pure
-//! functions of the [`Screen`], the seed and the frame number: the same bits for any number of threads.
+//! A method is a struct of its published parameters: its `estimate` is the openness of every pixel (1 = open) before its
+//! filter, `filter` what its filter makes of that. All are pure functions of the [`Screen`], the seed and the frame number: the
+//! same bits for any number of threads.
 #![forbid(unsafe_code)]
 
 mod blur;
+mod gtao;
 mod hbao;
 mod hybrid;
 mod screen;
 mod ssao;
 mod tile;
 
+pub use gtao::{Gtao, SliceSampling};
 pub use hbao::Hbao;
 pub use hybrid::{Hybrid, HybridEstimate};
 pub use screen::Screen;
