@@ -6,6 +6,7 @@
 //! same bits for any number of threads.
 #![forbid(unsafe_code)]
 
+mod bitmask;
 mod blur;
 mod gtao;
 mod hbao;
@@ -14,6 +15,7 @@ mod screen;
 mod ssao;
 mod tile;
 
+pub use bitmask::Bitmask;
 pub use gtao::{Gtao, SliceSampling};
 pub use hbao::Hbao;
 pub use hybrid::{Hybrid, HybridEstimate};

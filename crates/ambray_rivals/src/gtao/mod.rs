@@ -30,6 +30,9 @@ use slice::{Slice, visible_arc};
 /// Least openness: what is seen is not closed (`XeGTAO_MainPass`).
 const LEAST: f32 = 0.03;
 
+/// Outer share of the radius over which samples lose their weight (`XE_GTAO_DEFAULT_FALLOFF_RANGE`).
+pub(crate) const FALLOFF_RANGE: f32 = 0.615;
+
 /// Ground-truth ambient occlusion; the defaults are XeGTAO's, tuned by its authors to match rays on their scenes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gtao {
@@ -62,7 +65,7 @@ impl Gtao {
         Self {
             sampling: SliceSampling::new(slices, steps),
             radius_multiplier: 1.457,
-            falloff_range: 0.615,
+            falloff_range: FALLOFF_RANGE,
             thin_occluder_compensation: 0.0,
             slope_correction: 0.05,
             final_power: 2.2,
