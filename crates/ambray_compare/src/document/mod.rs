@@ -161,3 +161,18 @@ pub struct Series {
     /// What each point is, for who points at it; as many as points, or none.
     pub labels: Vec<String>,
 }
+
+impl Document {
+    /// Everything in its sections, in order.
+    pub fn blocks(&self) -> impl Iterator<Item = &Block> {
+        self.sections.iter().flat_map(|section| &section.blocks)
+    }
+
+    /// All its pictures, in the order in which they are seen; one that is seen twice comes twice.
+    pub fn pictures(&self) -> impl Iterator<Item = &Picture> {
+        self.blocks().flat_map(|block| match block {
+            Block::Slider { pictures, .. } | Block::Gallery { pictures, .. } => pictures.as_slice(),
+            _ => &[],
+        })
+    }
+}
