@@ -6,7 +6,7 @@ use std::{
     time::Duration,
 };
 
-use ambray_core::{control::Control, frame::PoseStats};
+use ambray_core::{control::Control, frame::PoseStats, settings::Method};
 use ambray_cpu::{BuildOptions, CpuBackend};
 use ambray_scene::{Scene, animation::Pose, surface::Surfaces};
 use ambray_vulkan::{
@@ -72,6 +72,8 @@ pub(crate) struct Backends {
     cpu: OnceLock<CpuBackend>,
     /// What rays of the device hit, as the host sees it, with the pose that it shows. Made when it is first needed.
     surfaces: Mutex<Option<(Option<Pose>, Arc<Surfaces>)>>,
+    /// The processor beside a device, for methods that run there only, with the pose that it shows.
+    aside: Mutex<Option<(Option<Pose>, Arc<CpuBackend>)>>,
     /// Whether the processor steps in for a device that fails.
     steps_in: bool,
     /// Why the processor renders although a device might.
@@ -106,6 +108,7 @@ impl Backends {
             vulkan: None,
             cpu: OnceLock::new(),
             surfaces: Mutex::default(),
+            aside: Mutex::default(),
             steps_in: options.backend == BackendChoice::Auto,
             reason: OnceLock::new(),
         };
@@ -130,6 +133,7 @@ impl Backends {
             vulkan: None,
             cpu: OnceLock::new(),
             surfaces: Mutex::default(),
+            aside: Mutex::default(),
             steps_in: self.steps_in,
             reason: self.reason.clone(),
         };
@@ -222,6 +226,27 @@ impl Backends {
         // The first reason counts: a race of two calls that fail alike.
         let _ = self.reason.set(error.to_string());
         Ok(())
+    }
+
+    /// The processor beside the device that renders, for `method`, which runs there only. Made when it is first needed, and
+    /// again for another pose.
+    ///
+    /// # Errors
+    /// If only the device was wanted.
+    pub(crate) fn beside(&self, method: Method) -> Result<Arc<CpuBackend>, RenderError> {
+        if !self.steps_in {
+            return Err(RenderError::Method { method, reason: "runs on the processor only" });
+        }
+        // Whole or empty at any time, so a panic of another thread does not matter.
+        let mut slot = self.aside.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((pose, cpu)) = &*slot
+            && *pose == self.pose
+        {
+            return Ok(Arc::clone(cpu));
+        }
+        let cpu = Arc::new(CpuBackend::new(self.posed_scene(), self.build));
+        *slot = Some((self.pose.clone(), Arc::clone(&cpu)));
+        Ok(cpu)
     }
 
     /// The scene at its pose, with the vertices of what deforms there too.

@@ -28,6 +28,7 @@ mod resolve;
 pub use ambray_core::{
     aov::{Aov, AovKind},
     camera,
+    compose::compose,
     control::Control,
     display, filter,
     frame::{Frame, FrameStats, GBufferPixel, PoseStats, RayCounts, StageTimes},

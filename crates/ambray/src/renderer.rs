@@ -11,11 +11,11 @@ use ambray_core::{
     frame::{Frame, FrameStats, PoseStats, StageTimes},
     inspect::{Inspection, OutsidePicture, inspect},
     query::{QueryPoint, QueryResult},
-    settings::{Settings, SettingsError},
+    settings::{Method, Settings, SettingsError},
     trace::{Hit, Ray, Trace},
     view::View,
 };
-use ambray_cpu::{BackendError, BuildOptions};
+use ambray_cpu::{BackendError, BuildOptions, Isa};
 use ambray_scene::Scene;
 use ambray_vulkan::{AccelerationStats, DeviceReport, Picture, TraceMode, VulkanError};
 use glam::Vec3;
@@ -54,6 +54,14 @@ pub enum RenderError {
     /// A camera that sees nothing, such as one whose target is its position.
     #[error("{0}")]
     Camera(String),
+    /// A screen-space method was asked for where there is no picture, or on a device.
+    #[error("the method {method} {reason}")]
+    Method {
+        /// Which method.
+        method: Method,
+        /// Why it cannot do that.
+        reason: &'static str,
+    },
     /// A query point that cannot be evaluated.
     #[error("point {index}: {reason}")]
     Point {
@@ -194,6 +202,18 @@ impl Renderer {
         Ok(Self::with_backends(self.backends.with_scene(scene, &control)?))
     }
 
+    /// Who renders with `settings`: the processor where a [`method`](Settings::method) needs it, else [`machine`](Self::machine).
+    #[must_use]
+    pub fn machine_for(&self, settings: &Settings) -> Machine {
+        match self.machine() {
+            Machine::Vulkan { .. } if settings.method.is_screen_space() => Machine::Cpu {
+                isa: Isa::detect().name(),
+                reason: Some(format!("the method {} runs there only", settings.method)),
+            },
+            machine => machine,
+        }
+    }
+
     /// Who renders. May change from a device to the processor when the device fails.
     #[must_use]
     pub fn machine(&self) -> Machine {
@@ -312,15 +332,19 @@ impl Renderer {
     /// Checks `settings` and replaces every `auto` by a value of the scene: of its cameras and lights at the time asked for,
     /// else of the scene as it was opened, so that nothing automatic changes while an animation plays.
     pub fn view(&mut self, settings: &Settings) -> Result<View, RenderError> {
-        self.prepare(settings, Control::default()).map(|(view, _)| view)
+        self.prepare(&settings.by_method(), Control::default()).map(|(view, _)| view)
     }
 
     /// Renders a frame. On the processor the same settings and scene give the same frame, bit for bit, for any number of
     /// threads; devices round differently.
     pub fn render(&mut self, settings: &Settings, control: Control<'_>) -> Result<Frame, RenderError> {
+        let settings = &*settings.by_method();
         let (view, moved) = self.prepare(settings, control)?;
         let mut frame = self.stepping_in(|backend| match backend {
             Backend::Cpu(cpu) => Ok(cpu.render(settings, &view, control)?),
+            Backend::Vulkan(_) if settings.method.is_screen_space() => {
+                Ok(self.backends.beside(settings.method)?.render(settings, &view, control)?)
+            }
             Backend::Vulkan(vulkan) => Ok(vulkan.render(settings, &view, control)?),
         })?;
         add(&mut frame.stats.times, &moved);
@@ -329,6 +353,10 @@ impl Renderer {
 
     /// Renders a frame and leaves it where it was rendered: nothing but its ray counts is copied from a device.
     pub fn draw(&mut self, settings: &Settings, control: Control<'_>) -> Result<Drawn, RenderError> {
+        let settings = &*settings.by_method();
+        if settings.method.is_screen_space() {
+            return self.render(settings, control).map(|frame| Drawn::Host(Box::new(frame)));
+        }
         let (view, moved) = self.prepare(settings, control)?;
         let mut drawn = self.stepping_in(|backend| match backend {
             Backend::Cpu(cpu) => Ok(Drawn::Host(Box::new(cpu.render(settings, &view, control)?))),
@@ -392,6 +420,8 @@ impl Renderer {
         points: &[QueryPoint],
         control: Control<'_>,
     ) -> Result<Vec<QueryResult>, RenderError> {
+        let settings = &*settings.by_method();
+        needs_no_picture(settings.method)?;
         let (view, _) = self.prepare(settings, control)?;
         for (index, point) in points.iter().enumerate() {
             check_point(point).map_err(|reason| RenderError::Point { index, reason })?;
@@ -417,6 +447,8 @@ impl Renderer {
         pixel: (u32, u32),
         control: Control<'_>,
     ) -> Result<Inspection, RenderError> {
+        let settings = &*settings.by_method();
+        needs_no_picture(settings.method)?;
         self.prepare(settings, control)?;
         control.check().map_err(|_| RenderError::Cancelled)?;
         self.stepping_in(|backend| match backend {
@@ -493,6 +525,14 @@ fn add(times: &mut StageTimes, moved: &PoseStats) {
     times.bottom_level += moved.bottom_level;
     times.top_level += moved.top_level;
     times.total += moved.total;
+}
+
+/// Refuses methods that look for blockers in the depth buffer of a picture.
+const fn needs_no_picture(method: Method) -> Result<(), RenderError> {
+    if method.is_screen_space() {
+        return Err(RenderError::Method { method, reason: "works on whole pictures only" });
+    }
+    Ok(())
 }
 
 fn check_point(point: &QueryPoint) -> Result<(), &'static str> {

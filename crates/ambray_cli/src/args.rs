@@ -2,6 +2,7 @@
 
 mod animate;
 mod backend;
+mod compare;
 mod notes;
 mod sequence;
 mod view;
@@ -18,10 +19,11 @@ use clap::{
 };
 
 pub use animate::{AnimateArgs, Updates, UpdatesArgs};
-use notes::{EXAMPLES, POINTS_HELP, PRECEDENCE, RENDER_NOTES, VIEW_NOTES};
+use notes::{COMPARE_NOTES, EXAMPLES, POINTS_HELP, PRECEDENCE, RENDER_NOTES, VIEW_NOTES};
 
 pub use ambray_files::{Format, Rate};
 pub use backend::{Backend, BackendArgs, DeviceArgs, Grouping, GroupingArgs, Trace};
+pub use compare::CompareArgs;
 pub use sequence::{Frames, SequenceArgs};
 pub use view::ViewArgs;
 
@@ -47,6 +49,9 @@ pub enum Command {
     /// Evaluate ambient light at points of a list instead of pixels
     #[command(after_long_help = PRECEDENCE)]
     Query(Box<QueryArgs>),
+    /// Compare with the truth and with other methods, in a report; or make the paper's figures
+    #[command(after_long_help = COMPARE_NOTES.to_owned() + PRECEDENCE)]
+    Compare(Box<CompareArgs>),
     /// Measure the time of whole frames
     #[command(after_long_help = PRECEDENCE)]
     Bench(Box<BenchArgs>),
@@ -320,7 +325,7 @@ fn whole<T: FromStr + PartialOrd + Display>(text: &str, least: T, most: T) -> Re
 /// The command line as clap knows it, with the default of each setting in its help.
 #[must_use]
 pub fn command() -> clap::Command {
-    let with_settings = ["render", "view", "query", "bench"];
+    let with_settings = ["render", "view", "query", "compare", "bench"];
     let command = Cli::command().args_override_self(true);
     with_settings.into_iter().fold(command, |command, name| {
         command.mut_subcommand(name, |sub| sub.mut_args(|arg| describe_setting(lenient(arg))))

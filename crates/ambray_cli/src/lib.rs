@@ -53,6 +53,7 @@ fn dispatch(command: &Command) -> anyhow::Result<()> {
         Command::Render(args) => commands::render::run(args),
         Command::View(args) => commands::view::run(args),
         Command::Query(args) => commands::query::run(args),
+        Command::Compare(args) => commands::compare::run(args),
         Command::Bench(args) => commands::bench::run(args),
         Command::Info(args) => commands::info::run(args),
         Command::Completions(args) => commands::documents::completions(args),

@@ -325,7 +325,7 @@ impl RenderReport {
             version: env!("CARGO_PKG_VERSION"),
             scene,
             build: BuildReport::of(&renderer.build_stats()),
-            backend: BackendReport::of(renderer),
+            backend: BackendReport::with(renderer, settings),
             view: ViewReport::of(&frame.view),
             width: frame.width,
             height: frame.height,

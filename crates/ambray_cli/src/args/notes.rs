@@ -12,6 +12,8 @@ Examples:
   ambray render scene.glb -o turn.mp4          the whole animation as a video, with ffmpeg (.gif without)
   ambray view scene.glb                        a window: turn the camera, tune the light, copy the command line
   ambray query scene.glb --points points.csv -o openness.csv
+  ambray compare scene.glb                     a report: errors, times and pictures of nine methods
+  ambray compare --paper                       the paper's figures, made again and measured
   ambray bench --frames 200 --json
   ambray bench flock --animate                 what it costs to follow an animation
   ambray info scene.glb                        what is in it: meshes, lights, cameras, animations
@@ -57,6 +59,19 @@ Videos:
   GIF needs nothing else: 256 colours a frame, up to 50 frames a second, beginnings of frames rounded to hundredths of a \
 second, repeated for ever. MP4 (H.264, even sides), WebM (VP9) and animated WebP need ffmpeg on the path. Every so many \
 frames (:STEP) are shown as much longer. The video appears when it is complete; Ctrl-C leaves none.
+
+";
+
+pub(super) const COMPARE_NOTES: &str = "\
+Every method sees the same depth and normals, and is filtered as it was published. --method of ambray render takes the same names.
+
+The truth is the mean of independent batches of 512 rays a pixel, each with its own scramble in every pixel, unfiltered, at least \
+1024 rays. It is kept by the content of scene and settings, so that the next report of the same view begins at once.
+
+Times are those of the method and its filter. Methods in screen space run on the processor, for which they were not made.
+
+With --paper, figures are seen from where the built-in atrium or Khronos' Sponza shows what they are about; other scenes are \
+seen through the camera that is asked for. The table is made at 1920x1080 unless --size says otherwise.
 
 ";
 

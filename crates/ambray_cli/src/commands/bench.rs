@@ -150,11 +150,11 @@ fn measure(
     check_animation(settings, &source)?;
     let scene = SceneReport::of(&source);
     let mut renderer = renderer(source.scene, options, &args.run)?;
-    let backend = BackendReport::of(&renderer);
+    let backend = BackendReport::with(&renderer, settings);
     let _graceful = signals::Graceful::begin();
     let variants = if args.thin_cost { thin_cost::variants(settings) } else { vec![settings.clone()] };
     let measured = frames(&mut renderer, args, &variants)?;
-    if BackendReport::of(&renderer) != backend {
+    if BackendReport::with(&renderer, settings) != backend {
         bail!("the device failed while it was measured: the times mean nothing");
     }
     let first = &measured[0];

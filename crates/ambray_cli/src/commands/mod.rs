@@ -2,6 +2,7 @@
 
 mod animate;
 pub mod bench;
+pub mod compare;
 mod cost;
 mod devices;
 pub mod documents;

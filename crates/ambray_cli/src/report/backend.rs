@@ -1,6 +1,6 @@
 //! Who rendered.
 
-use ambray::{Machine, Renderer, vulkan::TraceMode};
+use ambray::{Machine, Renderer, settings::Settings, vulkan::TraceMode};
 use serde::Serialize;
 
 /// Who rendered. What does not apply is null in JSON.
@@ -24,7 +24,17 @@ impl BackendReport {
     /// Who renders with `renderer` now: asked after the work, since the processor may have stepped in.
     #[must_use]
     pub fn of(renderer: &Renderer) -> Self {
-        match renderer.machine() {
+        Self::named(renderer, renderer.machine())
+    }
+
+    /// The same with `settings`, whose method may need the processor.
+    #[must_use]
+    pub fn with(renderer: &Renderer, settings: &Settings) -> Self {
+        Self::named(renderer, renderer.machine_for(settings))
+    }
+
+    fn named(renderer: &Renderer, machine: Machine) -> Self {
+        match machine {
             Machine::Cpu { isa, reason } => {
                 Self { kind: "cpu", isa: Some(isa), reason, device: None, driver: None, trace: None }
             }

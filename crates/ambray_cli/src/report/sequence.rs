@@ -150,7 +150,7 @@ impl Tally {
             version: env!("CARGO_PKG_VERSION"),
             scene,
             build: BuildReport::of(&renderer.build_stats()),
-            backend: BackendReport::of(renderer),
+            backend: BackendReport::with(renderer, settings),
             view: self.view,
             width: settings.size.width,
             height: settings.size.height,

@@ -9,6 +9,7 @@ mod motion;
 mod pass1;
 mod pass2;
 mod points;
+mod rival;
 mod stages;
 mod temporal;
 mod world;
@@ -108,10 +109,18 @@ impl CpuBackend {
         pool.install(|| {
             let sequel = accumulation.as_ref();
             let mut pass1 = pass1::run(&self.world, settings, view, &params, sequel, control)?;
-            let pass2 = pass2::run(&mut pass1, settings, view, sequel, control)?;
-            let (width, height) = view.camera.size();
             let mut times = pass1.clock.shares(pass1.elapsed);
-            times.filter = pass2.elapsed;
+            let pass2 = if settings.method.is_screen_space() {
+                let rival = rival::run(&self.world, settings, view, &params, &mut pass1, control)?;
+                let pass2 = pass2::run(&mut pass1, &rival.settings, view, None, control)?;
+                pass1.ambient = rival.raw;
+                [times.ambient, times.filter] = rival.elapsed;
+                pass2
+            } else {
+                pass2::run(&mut pass1, settings, view, sequel, control)?
+            };
+            let (width, height) = view.camera.size();
+            times.filter += pass2.elapsed;
             times.total = start.elapsed();
             let frames = pass2.history();
             if sequel.is_some() {

@@ -148,8 +148,11 @@ impl Job<'_> {
         let start = self.clock.book(Stage::Primary, start);
         counts.shadow += self.direct(scratch, band);
         let start = self.clock.book(Stage::Direct, start);
-        self.ambient(scratch, band, counts);
-        self.clock.book(Stage::Ambient, start);
+        // Methods in screen space need the whole G-buffer first.
+        if !self.settings.method.is_screen_space() {
+            self.ambient(scratch, band, counts);
+            self.clock.book(Stage::Ambient, start);
+        }
     }
 
     /// What each pixel sees.

@@ -1,0 +1,115 @@
+//! Subjects over the frames of a scene that moves.
+
+use ambray::{
+    RenderError, Renderer,
+    settings::{Auto, Method, Settings, Temporal},
+};
+use ambray_metrics::{Ghosting, Map, flicker_of, ghosting, rmse};
+use serde::Serialize;
+
+use super::{Options, Work};
+use crate::{
+    maps,
+    subject::Subject,
+    truth::{Content, Truth},
+};
+
+/// Change of the truth from one frame to the next from which on it counts as one, for [`ghosting`].
+const CHANGED: f32 = 0.02;
+
+/// Frames of a scene that moves.
+#[derive(Clone, Debug)]
+pub struct SequenceOptions {
+    /// How many, from the time that the settings say on.
+    pub frames: u32,
+    /// Frames a second.
+    pub fps: f64,
+}
+
+/// What was measured of a sequence.
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Moving {
+    /// Frames.
+    pub frames: u32,
+    /// Frames a second.
+    pub fps: f64,
+    /// Every subject, and Ambray accumulating over the frames.
+    pub rows: Vec<SequenceRow>,
+}
+
+/// What was measured of one subject over a sequence.
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct SequenceRow {
+    /// The name of the subject.
+    pub name: String,
+    /// Root mean square error of each frame.
+    pub rmse: Vec<f64>,
+    /// Root mean square change of the error from frame to frame.
+    pub flicker: f64,
+    /// How many frames it lags behind where the truth changes; nothing if it changes nowhere.
+    pub lag: Option<f64>,
+    /// Root mean square error where the truth changes.
+    pub changing_rmse: Option<f64>,
+}
+
+/// Renders all `subjects` over the frames of `sequence`, and Ambray again with accumulation.
+pub(super) fn run(
+    renderer: &mut Renderer,
+    content: &Content,
+    settings: &Settings,
+    options: &Options,
+    sequence: &SequenceOptions,
+    subjects: &[Subject],
+    work: &Work<'_>,
+) -> Result<Moving, RenderError> {
+    let at = |settings: &Settings, k: u32| {
+        let time = f64::from(settings.time.unwrap_or(0.0)) + f64::from(k) / sequence.fps;
+        Settings { time: Auto::Value(time as f32), ..settings.clone() }
+    };
+    let mut truths = Vec::new();
+    for k in 0..sequence.frames {
+        let what = format!("the truth of frame {k}");
+        let truth = work.step(&what, super::TRUTH_WEIGHT, |control| {
+            Truth::find(renderer, content, &at(settings, k), &options.truth, control)
+        })?;
+        truths.push(truth.openness);
+    }
+    let mut rows = Vec::new();
+    for subject in subjects.iter().cloned().chain([accumulating(settings)]) {
+        renderer.forget_frames();
+        let mut maps = Vec::new();
+        for k in 0..sequence.frames {
+            let mut settings = at(&subject.settings, k);
+            if settings.temporal == Temporal::On {
+                settings.frame = subject.settings.frame.wrapping_add(k);
+            }
+            let what = format!("{}, frame {k}", subject.name);
+            let weight = settings.spp as f32 + 4.0;
+            let frame = work.step(&what, weight, |control| renderer.render(&settings, control))?;
+            maps.push(maps::filtered(&frame));
+        }
+        rows.push(SequenceRow::of(&subject, &maps, &truths));
+    }
+    Ok(Moving { frames: sequence.frames, fps: sequence.fps, rows })
+}
+
+/// Ambray with light that accumulates over the frames.
+fn accumulating(settings: &Settings) -> Subject {
+    let settings = Settings { method: Method::Ambray, temporal: Temporal::On, ..settings.clone() };
+    Subject { name: "Ambray, accumulated".to_owned(), settings }
+}
+
+impl SequenceRow {
+    fn of(subject: &Subject, maps: &[Map], truths: &[Map]) -> Self {
+        let ghosting = ghosting(maps, truths, CHANGED);
+        Self {
+            name: subject.name.clone(),
+            rmse: maps.iter().zip(truths).map(|(map, truth)| rmse(map, truth)).collect(),
+            flicker: flicker_of(maps, truths).unwrap_or_default(),
+            lag: ghosting.map(|Ghosting { lag, .. }| lag),
+            changing_rmse: ghosting.map(|Ghosting { rmse, .. }| rmse),
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! Plots of what was measured.
+
+use crate::{
+    document::{Axis, Plot, Series},
+    experiment::{Moving, Outcome, Row},
+};
+
+fn logarithmic(title: &str) -> Axis {
+    Axis { title: title.to_owned(), logarithmic: true }
+}
+
+/// A series a subject, at the points that `point` finds.
+fn series(outcome: &Outcome, point: impl Fn(&Row) -> (f64, f64)) -> Vec<Series> {
+    let of = |line: &Vec<Row>| {
+        let label = |row: &Row| {
+            let (x, y) = point(row);
+            format!("{}, {}: {x:.3}, {y:.5}", row.name, row.effort)
+        };
+        Series {
+            name: line.first().map(|row| row.name.clone()).unwrap_or_default(),
+            points: line.iter().map(&point).collect(),
+            labels: line.iter().map(label).collect(),
+        }
+    };
+    outcome.series.iter().map(of).collect()
+}
+
+/// The same without methods that trace no rays.
+fn traced(outcome: &Outcome, point: impl Fn(&Row) -> (f64, f64)) -> Vec<Series> {
+    let all = series(outcome, point);
+    all.into_iter().filter(|series| series.points.iter().any(|&(x, _)| x > 0.0)).collect()
+}
+
+pub(super) fn error_against_rays(outcome: &Outcome) -> Plot {
+    Plot {
+        caption: "Error after the filter against rays.".to_owned(),
+        x: logarithmic("ambient rays a pixel"),
+        y: logarithmic("RMSE"),
+        series: traced(outcome, |row| (row.rays_per_pixel, row.measures.rmse)),
+    }
+}
+
+pub(super) fn sampling_against_rays(outcome: &Outcome) -> Plot {
+    Plot {
+        caption: "Sampling part of the error against rays.".to_owned(),
+        x: logarithmic("ambient rays a pixel"),
+        y: logarithmic("sampling part"),
+        series: traced(outcome, |row| (row.rays_per_pixel, row.measures.sampling_part.unwrap_or_default())),
+    }
+}
+
+pub(super) fn error_against_time(outcome: &Outcome) -> Plot {
+    Plot {
+        caption: "Error after the filter against time.".to_owned(),
+        x: logarithmic("milliseconds"),
+        y: logarithmic("RMSE"),
+        series: series(outcome, |row| (row.milliseconds.median, row.measures.rmse)),
+    }
+}
+
+pub(super) fn error_over_frames(moving: &Moving) -> Plot {
+    let of = |(name, values): (&String, &Vec<f64>)| Series {
+        name: name.clone(),
+        points: values.iter().enumerate().map(|(k, &rmse)| (k as f64, rmse)).collect(),
+        labels: values.iter().enumerate().map(|(k, rmse)| format!("{name}, frame {k}: {rmse:.5}")).collect(),
+    };
+    Plot {
+        caption: "Error of each frame.".to_owned(),
+        x: Axis { title: "frame".to_owned(), logarithmic: false },
+        y: logarithmic("RMSE"),
+        series: moving.rows.iter().map(|row| of((&row.name, &row.rmse))).collect(),
+    }
+}
