@@ -22,7 +22,7 @@ use crate::{
         FALLOFF_RANGE,
         denoise::denoise,
         falloff::Falloff,
-        march::{March, Receiver},
+        march::{Border, March, Receiver},
         slice::Slice,
     },
 };
@@ -45,7 +45,7 @@ impl Bitmask {
     /// The numbers of samples that were published: one slice with 16 samples on each side (figure 10, table 1); the other
     /// qualities have fewer samples, or the most slices that the authors' SSRT3 offers.
     ///
-    /// Steps are even (Algorithm 1, line 6) and jittered (§5), by GTAO's noise.
+    /// Steps are even (Algorithm 1, line 6) and jittered (§5), by GTAO's noise. They end at the border of the picture, as SSRT3's do.
     #[must_use]
     pub fn of(settings: &Settings) -> Self {
         let (slices, steps) = match settings.screen_quality {
@@ -66,7 +66,7 @@ impl Bitmask {
         let thickness = self.thickness.unwrap_or(0.25 * screen.radius);
         // Thickness takes the place of a falloff: this one is for the depth pyramid alone.
         let falloff = Falloff { radius: screen.radius, range: FALLOFF_RANGE * screen.radius };
-        let march = March::new(screen, self.sampling, falloff, control)?;
+        let march = March::new(screen, self.sampling, Border::Open, falloff, control)?;
         screen.map(control, |x, y| self.openness(&march, thickness, march.receiver(x, y)))
     }
 

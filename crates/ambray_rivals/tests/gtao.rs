@@ -62,10 +62,15 @@ fn an_open_plane_is_open() {
                 let filtered = filter(&gtao, &screen, &raw);
                 let (raw, filtered) =
                     (mean_around(&screen, &raw, (24, 24), 8), mean_around(&screen, &filtered, (24, 24), 8));
-                // One slice sees an oblique plane as 0.6 or as 1.34 by its direction: the power makes the mean of that too large.
-                let tolerance = if gtao.sampling.slices == 1 { 0.1 } else { 0.02 };
-                assert!((raw - 1.0).abs() < tolerance, "{raw} from {position} with {projection:?}");
-                assert!((filtered - 1.0).abs() < 0.015, "{filtered} from {position} with {projection:?}");
+                // One slice sees an oblique plane as 0.6 or as 1.34 by its direction, and the power and the limit of 1.5 do not
+                // leave the mean of that as it was.
+                let [of_raw, of_filtered] =
+                    if gtao.sampling.slices == 1 { [0.1, 0.05] } else { [0.02, 0.01] };
+                assert!((raw - 1.0).abs() < of_raw, "{raw} from {position} with {projection:?}");
+                assert!(
+                    (filtered - 1.0).abs() < of_filtered,
+                    "{filtered} from {position} with {projection:?}"
+                );
             }
         }
     }
@@ -282,4 +287,33 @@ fn the_denoiser_takes_variance_as_its_weights_say() {
     };
     let ratio = variance(&filter(&quality(ScreenQuality::High), &screen, &raw)) / variance(&raw);
     assert!((ratio - 0.1126).abs() < 0.01, "{ratio}");
+}
+
+#[test]
+fn values_are_those_of_the_shaders_written_out_in_another_language() {
+    // The scene of golden/xegtao.py.
+    let looking = camera(DVec3::ZERO, DVec3::NEG_Z, PERSPECTIVE, (96, 64));
+    let shapes = [plane(dvec3(0.0, -1.0, 0.0), DVec3::Y, |_| true), sphere(dvec3(0.3, -0.4, -4.0), 0.6)];
+    let screen = screen(looking, &shapes, 1.6, &Settings::default());
+    let gtao = quality(ScreenQuality::High);
+    let raw = estimate(&gtao, &screen);
+    let filtered = filter(&gtao, &screen, &raw);
+    let golden = include_str!("golden/xegtao.csv").lines().skip(1).map(|line| {
+        let fields: Vec<f32> = line.split(',').map(|field| field.parse().unwrap()).collect();
+        (fields[1] as usize * 96 + fields[0] as usize, fields[2], fields[3])
+    });
+    let (mut count, mut different) = (0, 0);
+    for (i, expected_raw, expected_filtered) in golden {
+        count += 1;
+        // Rounding may decide for another pixel: then a few values differ.
+        let differs = (raw[i] - expected_raw).abs() > 1e-4 || (filtered[i] - expected_filtered).abs() > 1e-4;
+        different += u32::from(differs);
+        assert!((raw[i] - expected_raw).abs() < 0.15, "{} for {expected_raw} at {i}", raw[i]);
+        assert!(
+            (filtered[i] - expected_filtered).abs() < 0.05,
+            "{} for {expected_filtered} at {i}",
+            filtered[i]
+        );
+    }
+    assert!(count > 200 && different < 5, "{different} of {count} differ");
 }

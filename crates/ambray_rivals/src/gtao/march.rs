@@ -37,6 +37,15 @@ impl SliceSampling {
     }
 }
 
+/// What is beside the picture.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Border {
+    /// The depth of the nearest pixel in it, as XeGTAO's sampler clamps.
+    Extended,
+    /// Nothing.
+    Open,
+}
+
 /// The point that is shaded.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Receiver {
@@ -56,6 +65,7 @@ pub(crate) struct March<'a> {
     screen: &'a Screen,
     depths: DepthPyramid<'a>,
     sampling: SliceSampling,
+    border: Border,
     /// Where samples end, scene units.
     radius: f32,
 }
@@ -65,11 +75,12 @@ impl<'a> March<'a> {
     pub(crate) fn new(
         screen: &'a Screen,
         sampling: SliceSampling,
+        border: Border,
         falloff: Falloff,
         control: &Control<'_>,
     ) -> Result<Self, Cancelled> {
         let depths = DepthPyramid::new(screen, falloff, control)?;
-        Ok(Self { screen, depths, sampling, radius: falloff.radius })
+        Ok(Self { screen, depths, sampling, border, radius: falloff.radius })
     }
 
     /// The point seen at pixel (x, y), which sees something.
@@ -138,7 +149,9 @@ impl<'a> March<'a> {
         let pixel =
             IVec2::new(receiver.pixel.x.saturating_add(offset.x), receiver.pixel.y.saturating_add(offset.y));
         let depth = self.depths.at(pixel, level);
-        depth.is_finite().then(|| self.screen.unproject(pixel.as_vec2(), depth) - receiver.position)
+        let is_seen = depth.is_finite()
+            && (matches!(self.border, Border::Extended) || self.screen.depth_at(pixel.x, pixel.y).is_some());
+        is_seen.then(|| self.screen.unproject(pixel.as_vec2(), depth) - receiver.position)
     }
 }
 

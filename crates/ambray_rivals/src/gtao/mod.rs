@@ -24,11 +24,14 @@ use glam::Vec3;
 use crate::Screen;
 use falloff::Falloff;
 pub use march::SliceSampling;
-use march::{March, Receiver};
+use march::{Border, March, Receiver};
 use slice::{Slice, visible_arc};
 
 /// Least openness: what is seen is not closed (`XeGTAO_MainPass`).
 const LEAST: f32 = 0.03;
+
+/// Greatest openness before the denoiser (`XE_GTAO_OCCLUSION_TERM_SCALE`).
+const GREATEST: f32 = 1.5;
 
 /// Outer share of the radius over which samples lose their weight (`XE_GTAO_DEFAULT_FALLOFF_RANGE`).
 pub(crate) const FALLOFF_RANGE: f32 = 0.615;
@@ -75,11 +78,11 @@ impl Gtao {
 
     /// Openness of every pixel before the denoiser, 1 = open; 1 where nothing is seen.
     ///
-    /// As few slices do not weigh every normal right, single pixels may be above 1; their mean is not.
+    /// As few slices do not weigh every normal right, single pixels may be above 1, up to 1.5: the denoiser averages that away.
     pub fn estimate(&self, screen: &Screen, control: &Control<'_>) -> Result<Vec<f32>, Cancelled> {
         let radius = self.radius_multiplier * screen.radius;
         let falloff = Falloff { radius, range: self.falloff_range * radius };
-        let march = March::new(screen, self.sampling, falloff, control)?;
+        let march = March::new(screen, self.sampling, Border::Extended, falloff, control)?;
         screen.map(control, |x, y| self.openness(&march, falloff, march.receiver(x, y)))
     }
 
@@ -100,7 +103,7 @@ impl Gtao {
         // Where the radius is a few pixels there is not much to find: fades towards open.
         let fade = 0.5 * ((10.0 - receiver.radius_pixels) / 100.0).clamp(0.0, 1.0);
         let visibility = (open + fade) / self.sampling.slices as f32;
-        libm::powf(visibility, self.final_power).max(LEAST)
+        libm::powf(visibility.max(0.0), self.final_power).clamp(LEAST, GREATEST)
     }
 
     /// The horizons h1 ≤ 0 ≤ h2 of a slice among `samples` (Jimenez et al. 2016, Algorithm 1, lines 17 to 27).
