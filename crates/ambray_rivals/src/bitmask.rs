@@ -5,8 +5,10 @@
 //! even angle around the normal. Every sample is taken for the front of something of constant thickness, and closes the
 //! sectors between its front and its back.
 //!
-//! As published, there is no falloff, and open sectors are counted (line 26): neither the cosine nor the crowding of slices at the viewing ray is weighed,
-//! as GTAO does in its integral. So values are those of rays only where everything is open or closed.
+//! As published, there is no falloff, and open sectors are counted (line 26): neither the cosine nor the crowding of slices at the
+//! viewing ray is weighed, as GTAO does in its integral. So values are those of rays only where everything is open or closed.
+//! A sector at the horizon counts as much as any other, so samples that are a little wrong darken oblique surfaces by some
+//! hundredths.
 
 use std::f32::consts::PI;
 
@@ -45,7 +47,8 @@ impl Bitmask {
     /// The numbers of samples that were published: one slice with 16 samples on each side (figure 10, table 1); the other
     /// qualities have fewer samples, or the most slices that the authors' SSRT3 offers.
     ///
-    /// Steps are even (Algorithm 1, line 6) and jittered (§5), by GTAO's noise. They end at the border of the picture, as SSRT3's do.
+    /// Steps are even (Algorithm 1, line 6) and jittered (§5). They end at the border of the picture, as SSRT3's do; noise and
+    /// depth pyramid are GTAO's.
     #[must_use]
     pub fn of(settings: &Settings) -> Self {
         let (slices, steps) = match settings.screen_quality {

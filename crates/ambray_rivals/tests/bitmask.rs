@@ -10,8 +10,8 @@ use ambray_core::{
 };
 use ambray_rivals::{Bitmask, Gtao, Screen, SliceSampling};
 use common_gtao::{
-    Shape, camera, cuboid, free, mean_around, openness_by_rays, pixel_of, plane, screen, sphere,
-    with_one_and_two_threads,
+    Shape, camera, check_golden, cuboid, free, golden_screen, mean_around, openness_by_rays, pixel_of, plane,
+    screen, sphere, with_one_and_two_threads,
 };
 use glam::{DVec3, dvec3};
 
@@ -208,4 +208,12 @@ fn values_depend_on_frame_and_seed_but_not_on_threads() {
     for other in [Settings { frame: 1, ..Settings::default() }, Settings { seed: 1, ..Settings::default() }] {
         assert_ne!(bitmask.estimate(&ball(&other), &free()).unwrap(), one);
     }
+}
+
+#[test]
+fn values_are_those_of_the_paper_written_out_in_another_language() {
+    let screen = golden_screen();
+    let bitmask = Bitmask::of(&Settings::default());
+    let raw = bitmask.estimate(&screen, &free()).unwrap();
+    check_golden(include_str!("golden/bitmask.csv"), &raw, &bitmask.filter(&screen, &raw, &free()).unwrap());
 }

@@ -8,8 +8,8 @@ use ambray_core::{
 };
 use ambray_rivals::{Gtao, Screen, SliceSampling};
 use common_gtao::{
-    Shape, camera, cuboid, first_hit, free, mean_around, openness_by_rays, pixel_of, plane, screen, sphere,
-    with_one_and_two_threads,
+    Shape, camera, check_golden, cuboid, first_hit, free, golden_screen, mean_around, openness_by_rays,
+    pixel_of, plane, screen, sphere, with_one_and_two_threads,
 };
 use glam::{DVec3, dvec3};
 
@@ -82,17 +82,20 @@ fn beside_wall(distance: f64, height: f64) -> f32 {
     (1.0 - 0.5 * (1.0 - distance / distance.hypot(height))) as f32
 }
 
-/// What the uncorrected estimator finds around `point`, and the point that the middle pixel sees.
-fn found_at(shapes: &[Shape], position: DVec3, point: DVec3) -> (f32, DVec3) {
+/// What the uncorrected estimator finds around each of `points`, and the point that the middle pixel there sees.
+fn found_at<const N: usize>(shapes: &[Shape], position: DVec3, points: [DVec3; N]) -> [(f32, DVec3); N] {
     // In parallel projection clamping at the border of the picture extends what does not change along z.
     let projection = Projection::Orthographic { height: 4.5 };
     let camera = camera(position, DVec3::ZERO, projection, (100, 100));
     let screen = screen(camera, shapes, 4.0, &Settings::default());
-    let (x, y) = pixel_of(&screen, point);
-    let ray = camera.primary_ray(x as u32, y as u32, 0);
-    let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
-    let (t, _) = first_hit(shapes, origin, direction).expect("a surface");
-    (mean_around(&screen, &estimate(&uncorrected(), &screen), (x, y), 1), origin + t * direction)
+    let values = estimate(&uncorrected(), &screen);
+    points.map(|point| {
+        let (x, y) = pixel_of(&screen, point);
+        let ray = camera.primary_ray(x as u32, y as u32, 0);
+        let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
+        let (t, _) = first_hit(shapes, origin, direction).expect("a surface");
+        (mean_around(&screen, &values, (x, y), 1), origin + t * direction)
+    })
 }
 
 #[test]
@@ -101,19 +104,18 @@ fn a_floor_beside_a_wall_is_as_open_as_its_view_factor_says() {
         plane(DVec3::ZERO, DVec3::Y, |p| (-2.0..=0.0).contains(&p.x)),
         plane(DVec3::ZERO, DVec3::X, |p| (0.0..=1.0).contains(&p.y)),
     ];
-    let viewer = dvec3(-10.0, 10.0, 0.0);
-    for distance in [0.3, 0.6, 1.2] {
-        let (found, seen) = found_at(&shapes, viewer, dvec3(-distance, 0.0, 0.0));
-        let expected = beside_wall(-seen.x, 1.0);
-        assert!((found - expected).abs() < 0.01, "{found} for {expected}, {distance} from the wall");
-    }
-    for height in [0.3, 0.7] {
+    let points = [-0.3, -0.6, -1.2].map(|x| dvec3(x, 0.0, 0.0));
+    let [a, b, c] = points;
+    let on_wall = [0.3, 0.7].map(|y| dvec3(0.0, y, 0.0));
+    let found = found_at(&shapes, dvec3(-10.0, 10.0, 0.0), [a, b, c, on_wall[0], on_wall[1]]);
+    for (i, (found, seen)) in found.into_iter().enumerate() {
         // The floor is a wall of length 2 to points of the wall.
-        let (found, seen) = found_at(&shapes, viewer, dvec3(0.0, height, 0.0));
-        let expected = beside_wall(seen.y, 2.0);
-        assert!((found - expected).abs() < 0.01, "{found} for {expected}, {height} up the wall");
+        let expected = if i < points.len() { beside_wall(-seen.x, 1.0) } else { beside_wall(seen.y, 2.0) };
+        assert!((found - expected).abs() < 0.01, "{found} for {expected} at {seen}");
     }
 }
+
+const ABOVE: DVec3 = dvec3(0.0, 10.0, 0.0);
 
 #[test]
 fn a_groove_is_closed_by_both_walls() {
@@ -122,10 +124,9 @@ fn a_groove_is_closed_by_both_walls() {
         cuboid(dvec3(-3.0, -1.0, -9.0), dvec3(-0.5, 0.8, 9.0)),
         cuboid(dvec3(1.0, -1.0, -9.0), dvec3(3.0, 0.8, 9.0)),
     ];
-    for x in [-0.2, 0.3, 0.8] {
-        let (found, seen) = found_at(&shapes, dvec3(0.0, 10.0, 0.0), dvec3(x, 0.0, 0.0));
+    for (found, seen) in found_at(&shapes, ABOVE, [-0.2, 0.3, 0.8].map(|x| dvec3(x, 0.0, 0.0))) {
         let expected = beside_wall(seen.x + 0.5, 0.8) + beside_wall(1.0 - seen.x, 0.8) - 1.0;
-        assert!((found - expected).abs() < 0.015, "{found} for {expected} at {x}");
+        assert!((found - expected).abs() < 0.015, "{found} for {expected} at {seen}");
     }
 }
 
@@ -133,31 +134,25 @@ fn a_groove_is_closed_by_both_walls() {
 fn a_dome_on_a_plane_is_seen_as_rays_see_it() {
     // Half a sphere is a height field from above: the depth buffer knows all of it.
     let shapes = [floor(), sphere(DVec3::ZERO, 1.0)];
-    for distance in [1.2, 1.5, 2.0] {
-        let (found, seen) = found_at(&shapes, dvec3(0.0, 10.0, 0.0), dvec3(distance, 0.0, 0.0));
+    for (found, seen) in found_at(&shapes, ABOVE, [1.2, 1.5, 2.0].map(|x| dvec3(x, 0.0, 0.0))) {
         let expected = openness_by_rays(&shapes, seen, DVec3::Y, 300) as f32;
-        assert!((found - expected).abs() < 0.015, "{found} for {expected}, {distance} from the centre");
+        assert!((found - expected).abs() < 0.015, "{found} for {expected} at {seen}");
     }
 }
 
 #[test]
 fn a_ball_in_the_air_closes_what_is_below_it_too() {
     // The known fault of height fields: from above, what is under the ball could as well be solid.
-    let shapes = [floor(), sphere(dvec3(0.0, 1.5, 0.0), 0.5)];
-    let solid = [
-        floor(),
-        sphere(dvec3(0.0, 1.5, 0.0), 0.5),
-        // A cylinder under the ball.
-        Box::new(|origin: DVec3, direction: DVec3| {
-            let (o, d) = (origin.with_y(0.0), direction.with_y(0.0));
-            let (a, b) = (d.length_squared(), o.dot(d));
-            let t = (-b - (b * b - a * (o.length_squared() - 0.25)).sqrt()) / a;
-            let height = origin.y + t * direction.y;
-            (t > 0.0 && (0.0..=1.5).contains(&height)).then(|| (t, (o + t * d) / 0.5))
-        }),
-    ];
-    let (found, seen) = found_at(&shapes, dvec3(0.0, 10.0, 0.0), dvec3(1.0, 0.0, 0.0));
-    let as_solid = openness_by_rays(&solid, seen, DVec3::Y, 300) as f32;
+    let ball = || sphere(dvec3(0.0, 1.5, 0.0), 0.5);
+    let below: Shape = Box::new(|origin, direction| {
+        let (o, d) = (origin.with_y(0.0), direction.with_y(0.0));
+        let (a, b) = (d.length_squared(), o.dot(d));
+        let t = (-b - (b * b - a * (o.length_squared() - 0.25)).sqrt()) / a;
+        let height = origin.y + t * direction.y;
+        (t > 0.0 && (0.0..=1.5).contains(&height)).then(|| (t, (o + t * d) / 0.5))
+    });
+    let [(found, seen)] = found_at(&[floor(), ball()], ABOVE, [DVec3::X]);
+    let as_solid = openness_by_rays(&[floor(), ball(), below], seen, DVec3::Y, 300) as f32;
     // The view factor of a ball wholly above the horizon is (r/D)² cos θ (Howell's catalogue, B-43), with D its distance.
     let distance = seen.distance(dvec3(0.0, 1.5, 0.0)) as f32;
     let truth = 1.0 - 0.25 / distance.powi(2) * 1.5 / distance;
@@ -291,29 +286,8 @@ fn the_denoiser_takes_variance_as_its_weights_say() {
 
 #[test]
 fn values_are_those_of_the_shaders_written_out_in_another_language() {
-    // The scene of golden/xegtao.py.
-    let looking = camera(DVec3::ZERO, DVec3::NEG_Z, PERSPECTIVE, (96, 64));
-    let shapes = [plane(dvec3(0.0, -1.0, 0.0), DVec3::Y, |_| true), sphere(dvec3(0.3, -0.4, -4.0), 0.6)];
-    let screen = screen(looking, &shapes, 1.6, &Settings::default());
+    let screen = golden_screen();
     let gtao = quality(ScreenQuality::High);
     let raw = estimate(&gtao, &screen);
-    let filtered = filter(&gtao, &screen, &raw);
-    let golden = include_str!("golden/xegtao.csv").lines().skip(1).map(|line| {
-        let fields: Vec<f32> = line.split(',').map(|field| field.parse().unwrap()).collect();
-        (fields[1] as usize * 96 + fields[0] as usize, fields[2], fields[3])
-    });
-    let (mut count, mut different) = (0, 0);
-    for (i, expected_raw, expected_filtered) in golden {
-        count += 1;
-        // Rounding may decide for another pixel: then a few values differ.
-        let differs = (raw[i] - expected_raw).abs() > 1e-4 || (filtered[i] - expected_filtered).abs() > 1e-4;
-        different += u32::from(differs);
-        assert!((raw[i] - expected_raw).abs() < 0.15, "{} for {expected_raw} at {i}", raw[i]);
-        assert!(
-            (filtered[i] - expected_filtered).abs() < 0.05,
-            "{} for {expected_filtered} at {i}",
-            filtered[i]
-        );
-    }
-    assert!(count > 200 && different < 5, "{different} of {count} differ");
+    check_golden(include_str!("golden/xegtao.csv"), &raw, &filter(&gtao, &screen, &raw));
 }

@@ -126,6 +126,31 @@ pub fn mean_around(screen: &Screen, values: &[f32], (x, y): (usize, usize), reac
     values.iter().sum::<f32>() / values.len() as f32
 }
 
+/// The scene of golden/xegtao.py.
+pub fn golden_screen() -> Screen {
+    let projection = Projection::Perspective { vertical_fov: 0.9 };
+    let looking = camera(DVec3::ZERO, DVec3::NEG_Z, projection, (96, 64));
+    let floor = plane(DVec3::NEG_Y, DVec3::Y, |_| true);
+    let ball = sphere(DVec3::new(0.3, -0.4, -4.0), 0.6);
+    screen(looking, &[floor, ball], 1.6, &Settings::default())
+}
+
+/// Compares with a golden file of `golden_screen`. Rounding may decide for another pixel or sector: a few may differ.
+#[track_caller]
+pub fn check_golden(golden: &str, raw: &[f32], filtered: &[f32]) {
+    let (mut count, mut different) = (0, 0);
+    for line in golden.lines().skip(1) {
+        let fields: Vec<f32> = line.split(',').map(|field| field.parse().unwrap()).collect();
+        let i = fields[1] as usize * 96 + fields[0] as usize;
+        let same = (raw[i] - fields[2]).abs() < 1e-4 && (filtered[i] - fields[3]).abs() < 1e-4;
+        different += u32::from(!same);
+        count += 1;
+        assert!((raw[i] - fields[2]).abs() < 0.15, "{} for {} at {i}", raw[i], fields[2]);
+    }
+    assert_eq!(count, 304);
+    assert!(different < 5, "{different} of {count} differ");
+}
+
 /// `work` with one thread, and with two.
 pub fn with_one_and_two_threads<T: Send>(work: impl Fn() -> T + Sync) -> [T; 2] {
     [1, 2].map(|threads| {

@@ -1,8 +1,8 @@
-"""XeGTAO at its defaults (quality High, denoiser "sharp"), from the description of its shaders alone: makes xegtao.csv.
+"""XeGTAO at its defaults (quality High, denoiser "sharp"), after the text of its shaders (XeGTAO 1.30): makes xegtao.csv.
 
-Written in double precision and without looking at the Rust, in the shader's own terms: texture coordinates, normalised device
-coordinates, quads of depths. It differs from the shaders where the crate says that it does: exact inverse cosines, no rounding
-to 8 bits, and no samples in the sky. The scene is a ball on a floor before the sky; the camera looks along -z from the origin.
+In double precision, in the shaders' own terms (texture coordinates, quads of depths) and sharing nothing with the Rust. It differs
+from the shaders where the crate says that it does: exact inverse cosines, no rounding to 8 bits, and no samples in the sky. The
+scene is a ball on a floor before the sky; the camera looks along -z from the origin, and view space has z away from it.
 
 Run: python3 xegtao.py > xegtao.csv
 """
@@ -64,11 +64,11 @@ def weights(radius):
     return -1 / width, start / width + 1
 
 
-def mip_filter(quad):
+def mip_filter(quad, radius):
     farthest = max(quad)
     if farthest == FAR:
         return FAR
-    mul, plus = weights(0.75 * RADIUS * 1.457)
+    mul, plus = weights(0.75 * radius)
     w = [saturate((farthest - d) * mul + plus) for d in quad]
     return sum(a * b for a, b in zip(w, quad)) / sum(w)
 
@@ -87,23 +87,26 @@ def hilbert(x, y):
 
 
 PIXELS = [[see(x, y) for x in range(WIDTH)] for y in range(HEIGHT)]
-MIPS = [[[p[0] for p in row] for row in PIXELS]]
-for _ in range(4):
-    fine = MIPS[-1]
-    MIPS.append(
-        [
-            [
-                mip_filter([fine[2 * y][2 * x], fine[2 * y][2 * x + 1], fine[2 * y + 1][2 * x], fine[2 * y + 1][2 * x + 1]])
-                for x in range(len(fine[0]) // 2)
-            ]
-            for y in range(len(fine) // 2)
+
+
+def pyramid(radius):
+    mips = [[[p[0] for p in row] for row in PIXELS]]
+    while len(mips) < 5:
+        fine = mips[-1]
+        quads = [
+            [(fine[y][x], fine[y][x + 1], fine[y + 1][x], fine[y + 1][x + 1]) for x in range(0, len(fine[0]), 2)]
+            for y in range(0, len(fine), 2)
         ]
-    )
+        mips.append([[mip_filter(quad, radius) for quad in row] for row in quads])
+    return mips
 
 
-def sample_level(u, v, mip):
+MIPS = pyramid(RADIUS * 1.457)
+
+
+def sample_level(u, v, mip, mips=MIPS):
     """A point sampler that clamps."""
-    texture = MIPS[min(round(mip), 4)]
+    texture = mips[min(round(mip), 4)]
     h, w = len(texture), len(texture[0])
     return texture[min(max(int(v * h // 1), 0), h - 1)][min(max(int(u * w // 1), 0), w - 1)]
 
@@ -201,9 +204,15 @@ def denoise(raw, edges, x, y):
     return min(total / sum(w for _, w in taps), 1.0)
 
 
-RAW = [[main_pass(x, y) for x in range(WIDTH)] for y in range(HEIGHT)]
-EDGES = [[packed_edges(x, y) for x in range(WIDTH)] for y in range(HEIGHT)]
-print("# x,y,raw,filtered: made by xegtao.py, which says how.")
-for y in range(1, HEIGHT, 4):
-    for x in range(2, WIDTH, 5):
-        print(f"{x},{y},{RAW[y][x]:.6f},{denoise(RAW, EDGES, x, y):.6f}")
+def rows(value):
+    """The values of every fourth row's every fifth pixel, before and after the denoiser."""
+    raw = [[value(x, y) for x in range(WIDTH)] for y in range(HEIGHT)]
+    edges = [[packed_edges(x, y) for x in range(WIDTH)] for y in range(HEIGHT)]
+    for y in range(1, HEIGHT, 4):
+        for x in range(2, WIDTH, 5):
+            yield f"{x},{y},{raw[y][x]:.6f},{denoise(raw, edges, x, y):.6f}"
+
+
+if __name__ == "__main__":
+    print("# x,y,raw,filtered: made by xegtao.py, which says how.")
+    print("\n".join(rows(main_pass)))
