@@ -19,9 +19,9 @@ use crate::Screen;
 /// How slices are placed, and samples along them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SliceSampling {
-    /// Slices a pixel.
+    /// Slices a pixel, at least 1.
     pub slices: u32,
-    /// Samples to either side of a slice.
+    /// Samples to either side of a slice, at least 1.
     pub steps: u32,
     /// Exponent of the places along a slice: 1 is even, more gathers them near the pixel.
     pub distribution_power: f32,
@@ -113,8 +113,6 @@ impl<'a> March<'a> {
 
     /// From `receiver` to the samples on both sides of its slice number `index`: first the one in the slice's direction, then
     /// the one opposite. `None` where nothing is seen.
-    ///
-    /// Samples beside the picture have the depth of the nearest pixel in it, as XeGTAO's sampler clamps.
     pub(crate) fn steps(
         &self,
         receiver: Receiver,

@@ -34,7 +34,8 @@ impl Slice {
 }
 
 /// Cosine-weighted share of a slice that is open between `horizons`, on either side of the viewer, for the projected normal
-/// at angle γ: the inner integral ∫ max(cos(θ − γ), 0) |sin θ| dθ in closed form (Jimenez et al. 2016, §4.1 and Algorithm 1, line 27).
+/// at angle γ: the inner integral ∫ max(cos(θ − γ), 0) |sin θ| dθ in closed form (Jimenez et al. 2016, §4.1 and Algorithm 1,
+/// line 27).
 pub(crate) fn visible_arc(horizons: [f32; 2], normal_angle: f32) -> f32 {
     let (sin, cos) = libm::sincosf(normal_angle);
     let arc = |h: f32| 0.25 * (cos + 2.0 * h * sin - libm::cosf(2.0 * h - normal_angle));
@@ -73,8 +74,7 @@ mod tests {
 
     #[test]
     fn slices_of_an_open_hemisphere_add_up_to_one() {
-        // (1/π) ∫₀^π ‖n‖ â(φ) dφ is 1 for every normal that the viewer sees: the estimator is exact where nothing blocks.
-        // So it is in the middle of the picture; elsewhere slices that are even in the picture are not even around the
+        // (1/π) ∫₀^π ‖n‖ â(φ) dφ is 1 for every normal that the viewer sees: the estimator is exact where nothing blocks. So it is in the middle of the picture; elsewhere slices that are even in the picture are not even around the
         // viewing ray, and XeGTAO's estimator is off by up to some hundredths.
         let viewer = Vec3::NEG_Z;
         for normal in [viewer, Vec3::new(1.0, 0.4, -0.5).normalize(), Vec3::new(0.0, 1.0, -0.1).normalize()] {
