@@ -74,8 +74,9 @@ mod tests {
 
     #[test]
     fn slices_of_an_open_hemisphere_add_up_to_one() {
-        // (1/π) ∫₀^π ‖n‖ â(φ) dφ is 1 for every normal that the viewer sees: the estimator is exact where nothing blocks. So it is in the middle of the picture; elsewhere slices that are even in the picture are not even around the
-        // viewing ray, and XeGTAO's estimator is off by up to some hundredths.
+        // (1/π) ∫₀^π ‖n‖ â(φ) dφ is 1 for every normal that the viewer sees: the estimator is exact where nothing blocks.
+        // So it is in the middle of the picture. Elsewhere slices that are even in the picture are not even around the viewing
+        // ray, and XeGTAO's estimator is off by up to some hundredths.
         let viewer = Vec3::NEG_Z;
         for normal in [viewer, Vec3::new(1.0, 0.4, -0.5).normalize(), Vec3::new(0.0, 1.0, -0.1).normalize()] {
             const SLICES: u32 = 4096;
