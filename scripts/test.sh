@@ -24,6 +24,9 @@ fi
 # The window's tests open it on a screen in memory.
 scripts/view.sh
 
+# The tests of reports open them in a browser.
+scripts/browser.sh
+
 step "formatting"
 if cargo fmt --version >/dev/null 2>&1; then cargo fmt --all --check; else echo "skipped: no rustfmt"; fi
 

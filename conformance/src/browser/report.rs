@@ -94,6 +94,13 @@ fn plots_are_drawn(page: &mut Page) {
             if (box.width < 250 || box.height < 150) faults.push(`${box.width} × ${box.height}`);
             if (marks.length === 0 || !marks.every(inside)) faults.push('points outside');
             if (chart.querySelectorAll('.grid text').length < 4) faults.push('no labels on the axes');
+            const colour = (element) => getComputedStyle(element).getPropertyValue('--colour');
+            const legend = [...chart.parentElement.querySelectorAll('.legend button')];
+            const alike = legend.every(button => {
+                const curve = chart.querySelector(`.series[data-series=\"${button.dataset.series}\"]`);
+                return colour(button.querySelector('.swatch')) && colour(button.querySelector('.swatch')) === colour(curve);
+            });
+            if (!alike) faults.push('the legend has other colours');
             if (cut.length) faults.push('cut: ' + cut.map(text => text.textContent));
             return faults.map(fault => `${chart.ariaLabel}: ${fault}`);
         })",

@@ -74,6 +74,7 @@ class Block {
   constructor(figure) {
     this.figure = figure;
     this.line = figure.querySelector(".readout");
+    this.help = [...this.line.childNodes];
     this.view = new View(() => this.draw());
     this.pointed = null;
     for (const button of figure.querySelectorAll("[data-zoom]")) {
@@ -95,12 +96,12 @@ class Block {
 
   leave() {
     this.pointed = null;
-    this.line.textContent = this.line.dataset.help;
+    this.line.replaceChildren(...this.help);
   }
 
   /** Reads the values under the pointer anew. */
   read() {
-    if (this.pointed) readOut(this.line, this.view, ...this.pointed, this.shown());
+    if (this.pointed) readOut(this.line, this.view, ...this.pointed, this.shown(), () => this.read());
   }
 
   zoom(how, u, v) {

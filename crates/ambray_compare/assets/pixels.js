@@ -34,10 +34,9 @@ class Pixels {
 
 const pixels = new Pixels(24);
 
-/** Says which pixel is at (u, v) of `view`, and its value in each of `shown`: pairs of a name and an id. */
-function readOut(line, view, u, v, shown) {
+/** Says which pixel is at (u, v) of `view`, and its value in each of `shown`: pairs of a name and an id; `again` when known. */
+function readOut(line, view, u, v, shown, again) {
   const [px, py] = view.at(u, v);
-  const again = () => readOut(line, view, u, v, shown);
   const read = ([name, id]) => {
     const { width, height } = sizeOf(id);
     const x = clamp(Math.floor(px * width), 0, width - 1);

@@ -5,9 +5,12 @@ use maud::{Markup, html};
 use super::store::Store;
 use crate::document::Picture;
 
-/// Help of the slider, shown until the pointer is over it.
+/// Help of the slider for who has a mouse, shown until it is over it.
 const SLIDER_HELP: &str = "Drag the divider, or move it with the arrow keys. Wheel or + and − zoom at the pointer, drag pans, \
     double click or 0 resets. Keys 1–9 choose the picture on the pointer's side, X swaps.";
+
+/// Help for who has fingers only.
+const TOUCH_HELP: &str = "Two fingers zoom and pan, a double tap resets; a touch reads the pixel under it.";
 
 /// Help of the gallery.
 const GALLERY_HELP: &str =
@@ -32,7 +35,7 @@ pub(super) fn slider(
         }
     };
     html! {
-        figure.block.slider.zooms id=(id) {
+        figure.block.slider.zooms.tall[is_tall(&pictures[left])] id=(id) {
             figcaption { (caption) }
             div.tools {
                 (choice(store, "Left", pictures, left))
@@ -52,6 +55,11 @@ pub(super) fn slider(
             (text("right", &pictures[right]))
         }
     }
+}
+
+/// Whether a picture as wide as the page would not fit into a window.
+fn is_tall(picture: &Picture) -> bool {
+    picture.height > picture.width * 2 / 3
 }
 
 /// The menu of one side.
@@ -110,5 +118,5 @@ fn zoom_buttons() -> Markup {
 }
 
 fn readout(help: &str) -> Markup {
-    html! { p.readout data-help=(help) { (help) } }
+    html! { p.readout { span.by-mouse { (help) } span.by-touch { (TOUCH_HELP) } } }
 }

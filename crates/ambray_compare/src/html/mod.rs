@@ -76,3 +76,6 @@ fn finding(claim: &str, measured: &str, holds: bool) -> Markup {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -13,10 +13,10 @@ use axis::{Scale, Tick, shows};
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 400.0;
 /// Edges of the field in which the curves are.
-const LEFT: f64 = 74.0;
+const LEFT: f64 = 84.0;
 const RIGHT: f64 = 628.0;
 const TOP: f64 = 12.0;
-const BOTTOM: f64 = 344.0;
+const BOTTOM: f64 = 340.0;
 
 /// `plot` under the id `id`.
 pub(super) fn plot(plot: &Plot, id: &str) -> Markup {
@@ -26,7 +26,8 @@ pub(super) fn plot(plot: &Plot, id: &str) -> Markup {
             @match Field::new(plot) {
                 Some(field) => {
                     (drawing(plot, &field))
-                    (legend(&plot.series))
+                    (legend(plot))
+                    (left_out(plot))
                     (values(plot))
                 }
                 None => p.nothing { "Nothing was measured that could be shown here." }
@@ -66,8 +67,7 @@ fn shown<'a>(plot: &'a Plot, series: &'a Series) -> impl Iterator<Item = (usize,
 fn drawing(plot: &Plot, field: &Field) -> Markup {
     let middle = (TOP + BOTTOM) / 2.0;
     html! {
-        svg.chart role="img" aria-label=(plot.caption) viewBox={ "0 0 " (WIDTH) " " (HEIGHT) }
-            xmlns="http://www.w3.org/2000/svg" {
+        svg.chart role="img" aria-label=(plot.caption) viewBox={ "0 0 " (WIDTH) " " (HEIGHT) } {
             g.grid {
                 @for tick in field.x.ticks() { (upright(field.x(tick.value), &tick)) }
                 @for tick in field.y.ticks() { (level(field.y(tick.value), &tick)) }
@@ -83,7 +83,7 @@ fn drawing(plot: &Plot, field: &Field) -> Markup {
 fn upright(x: f64, tick: &Tick) -> Markup {
     html! {
         line.between[tick.label.is_none()] x1=(place(x)) x2=(place(x)) y1=(TOP) y2=(BOTTOM) {}
-        @if let Some(label) = &tick.label { text x=(place(x)) y=(BOTTOM + 19.0) text-anchor="middle" { (label) } }
+        @if let Some(label) = &tick.label { text.below x=(place(x)) y=(BOTTOM + 8.0) text-anchor="middle" { (label) } }
     }
 }
 
@@ -128,13 +128,15 @@ fn look(index: usize) -> String {
     format!("colour-{}{dashed}", index % marker::COLOURS)
 }
 
-fn legend(series: &[Series]) -> Markup {
+/// The series that can be seen.
+fn legend(plot: &Plot) -> Markup {
+    let seen = plot.series.iter().enumerate().filter(|(_, series)| shown(plot, series).next().is_some());
     html! {
         ul.legend {
-            @for (i, series) in series.iter().enumerate() {
+            @for (i, series) in seen {
                 li {
                     button type="button" aria-pressed="true" data-series=(i) {
-                        svg.swatch class=(look(i)) viewBox="-16 -8 32 16" aria-hidden="true" {
+                        svg class={ "swatch " (look(i)) } viewBox="-16 -8 32 16" aria-hidden="true" {
                             @if series.points.len() > 1 { polyline points="-16,0 16,0" {} }
                             (marker::marker(i))
                         }
@@ -143,6 +145,23 @@ fn legend(series: &[Series]) -> Markup {
                 }
             }
         }
+    }
+}
+
+/// Points that the axes cannot show, for a plot must not hide what was measured.
+fn left_out(plot: &Plot) -> Markup {
+    let names: Vec<String> = plot
+        .series
+        .iter()
+        .flat_map(|series| (0..series.points.len()).map(move |i| (series, i)))
+        .filter(|(series, i)| !(shows(&plot.x, series.points[*i].0) && shows(&plot.y, series.points[*i].1)))
+        .map(|(series, i)| {
+            let (x, y) = series.points[i];
+            format!("{} ({}, {})", said(series, i), short(x), short(y))
+        })
+        .collect();
+    html! {
+        @if !names.is_empty() { p.left-out { "Not on these axes (x, y): " (names.join("; ")) "." } }
     }
 }
 

@@ -33,6 +33,7 @@ fn a_point_that_cannot_be_shown_is_left_out_of_the_drawing_and_kept_in_the_value
     let drawn = plot(&sample(), "p").into_string();
     assert_eq!(drawn.matches(r#"class="point""#).count(), 3);
     assert!(!drawn.contains("third\n") && drawn.contains("third</th>"), "{drawn}");
+    assert!(drawn.contains("Not on these axes (x, y): a &lt; b – third (100, 0)."), "{drawn}");
     assert!(!drawn.contains("NaN") && !drawn.contains("inf"), "{drawn}");
 }
 
