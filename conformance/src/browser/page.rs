@@ -1,11 +1,19 @@
 //! A page in the browser: looked at, pointed at, typed into, and listened to.
 
-use std::{fs, path::Path};
+use std::{
+    fs,
+    path::Path,
+    thread,
+    time::{Duration, Instant},
+};
 
 use base64::{Engine as _, engine::general_purpose::STANDARD};
 use serde_json::{Value, json};
 
-use super::protocol::{Connection, Event};
+use super::{
+    PATIENCE,
+    protocol::{Connection, Event},
+};
 
 /// What a page is looked at with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -118,10 +126,23 @@ impl Page {
 
     /// Waits until the page has stood still for a moment and is painted.
     pub fn settle(&mut self) {
-        // Longer than the pause that reports want between scrolling and zooming by the wheel.
-        self.value(
-            "new Promise(done => setTimeout(() => requestAnimationFrame(() => requestAnimationFrame(done)), 300))",
-        );
+        let painted = "new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))";
+        // What scrolls is told of with the next frame; reports want a pause between that and zooming by the wheel.
+        self.value(&format!(
+            "{painted}.then(() => new Promise(done => setTimeout(done, 300))).then(() => {painted})"
+        ));
+    }
+
+    /// Waits until an expression is true.
+    ///
+    /// # Panics
+    /// If it does not become so.
+    pub fn wait_until(&mut self, expression: &str) {
+        let start = Instant::now();
+        while self.value(expression) != true {
+            assert!(start.elapsed() < PATIENCE, "{expression} does not become true");
+            thread::sleep(Duration::from_millis(50));
+        }
     }
 
     /// Scrolls the element of a selector into the middle of the window; where it is then.
@@ -191,6 +212,14 @@ impl Page {
             self.touch(if i == 0 { "touchStart" } else { "touchMove" }, &[place]);
         }
         self.touch("touchEnd", &[]);
+    }
+
+    /// Taps so many times in quick succession.
+    pub fn tap(&mut self, place: (f64, f64), times: u32) {
+        for _ in 0..times {
+            self.touch("touchStart", &[place]);
+            self.touch("touchEnd", &[]);
+        }
     }
 
     /// Moves two fingers.

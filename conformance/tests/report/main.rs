@@ -19,6 +19,7 @@ fn kept(name: &str) -> PathBuf {
 fn everything_works_on_a_desk_and_on_a_phone_by_day_and_by_night() {
     let Some(mut browser) = Browser::start() else { return };
     let html = page(&sample::document());
+    std::fs::write(kept("page.html"), &html).expect("a file");
     let looks = [
         ("desktop", Look::DESKTOP),
         ("desktop-dark", Look::DESKTOP.dark()),
@@ -53,4 +54,21 @@ fn the_page_is_dark_when_asked_to_be() {
     };
     assert_eq!(paper(Look::DESKTOP), 255);
     assert!(paper(Look::DESKTOP.dark()) < 64);
+}
+
+#[test]
+fn without_script_the_page_still_shows_its_pictures_and_plots() {
+    let Some(mut browser) = Browser::start() else { return };
+    let html = page(&sample::document());
+    let (before, script) = html.split_once("<script>").expect("a script");
+    let (_, after) = script.split_once("</script>").expect("its end");
+    let mut page = browser.open_text(&format!("{before}{after}"), Look::DESKTOP);
+    page.screenshot_all(&kept("without-script.png"));
+    let clip = page.text("getComputedStyle(document.querySelector('.slider .picture.right')).clipPath");
+    assert_eq!(clip, "inset(0px 0px 0px 50%)");
+    let seen = "[...document.querySelectorAll('.tools, .divider, .readout, .copy')].filter(e => e.checkVisibility()).length";
+    assert_eq!(page.number(seen), 0.0, "what does nothing is not shown");
+    assert!(page.number("document.querySelector('.chart').getBoundingClientRect().width") > 300.0);
+    assert!(page.text("document.querySelector('.point title').textContent").starts_with("Ambray – 1 rays"));
+    report::assert_clean(&mut page);
 }

@@ -35,7 +35,7 @@ pub(crate) fn truth(x: u32, y: u32) -> [u8; 3] {
 /// Value of the picture with a pattern.
 pub(crate) fn pattern(x: u32, y: u32) -> [u8; 3] {
     let [r, g, b] = truth(x, y);
-    if (x / 4 + y / 4) % 2 == 0 { [r, g, b + 100] } else { [r, g, b] }
+    if (x / 4 + y / 4).is_multiple_of(2) { [r, g, b + 100] } else { [r, g, b] }
 }
 
 pub(crate) fn pictures() -> Vec<Picture> {

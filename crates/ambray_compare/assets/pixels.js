@@ -36,6 +36,8 @@ const pixels = new Pixels(24);
 
 /** Says which pixel is at (u, v) of `view`, and its value in each of `shown`: pairs of a name and an id; `again` when known. */
 function readOut(line, view, u, v, shown, again) {
+  // All that are shown must fit, or each would push out another for ever.
+  pixels.most = Math.max(pixels.most, shown.length);
   const [px, py] = view.at(u, v);
   const read = ([name, id]) => {
     const { width, height } = sizeOf(id);
