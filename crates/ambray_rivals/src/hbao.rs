@@ -74,7 +74,8 @@ impl Hbao {
         screen.map(control, |x, y| {
             let Some(position) = screen.position(x, y) else { return 1.0 };
             let pixel = Vec2::new(x as f32, y as f32);
-            let around = Surroundings { screen, pixel, position, normal: screen.normal(x, y), bias };
+            let (normal, sight) = (screen.normal(x, y), -screen.towards_viewer(position));
+            let around = Surroundings { screen, pixel, position, normal, sight, bias };
             let Some(steps) = self.steps_within(screen, position.z) else { return 1.0 };
             let Jitter { turn, start } = jitters.at(x, y);
             let blocked =
@@ -118,6 +119,8 @@ struct Surroundings<'a> {
     pixel: Vec2,
     position: Vec3,
     normal: Vec3,
+    /// Unit vector from the viewer.
+    sight: Vec3,
     /// Cosine and sine of the angle bias.
     bias: Vec2,
 }
@@ -129,14 +132,15 @@ impl Surroundings<'_> {
         let (mut blocked, mut above, mut sin_horizon) = (0.0, 0.0, -1.0);
         for step in 0..steps.count {
             let place = self.pixel + direction * ((step as f32 + 1.0 + start) * steps.pixels);
-            let Some(offset) = self.offset_to(place) else { continue };
+            let snapped = place.round();
+            let Some(offset) = self.offset_to(snapped) else { continue };
             let square = offset.length_squared() / (self.screen.radius * self.screen.radius);
             // Samples outside the radius have no influence.
             if square >= 1.0 {
                 continue;
             }
             let sin = -offset.z / offset.length();
-            let rise = sin - self.sin_tangent(offset.xy());
+            let rise = sin - self.sin_tangent(snapped - self.pixel);
             if sin > sin_horizon && rise > above {
                 blocked += (1.0 - square) * (rise - above);
                 (above, sin_horizon) = (rise, sin);
@@ -145,25 +149,28 @@ impl Surroundings<'_> {
         blocked
     }
 
-    /// Vector from the pixel to what is seen at `place`, snapped to the next pixel; `None` at the pixel itself, outside the
-    /// picture and where nothing is seen.
+    /// Vector from the pixel to what is seen at the pixel `place`; `None` at the pixel itself, outside the picture and where
+    /// nothing is seen.
     fn offset_to(&self, place: Vec2) -> Option<Vec3> {
-        let snapped = place.round();
-        let depth = self.screen.depth_at(snapped.x as i32, snapped.y as i32)?;
-        let is_sample = depth.is_finite() && snapped != self.pixel;
-        is_sample.then(|| self.screen.unproject(snapped, depth) - self.position)
+        let depth = self.screen.depth_at(place.x as i32, place.y as i32)?;
+        let is_sample = depth.is_finite() && place != self.pixel;
+        is_sample.then(|| self.screen.unproject(place, depth) - self.position)
     }
 
-    /// sin(t + bias) of the tangent plane in the direction `along` of the picture plane, 1 beyond a right angle.
+    /// sin(t + bias) of the tangent plane towards the pixel that is `way` to the right and down; 1 beyond a right angle.
     ///
-    /// It is taken for every snapped sample anew, as the sample does for high quality, so that a plane never blocks itself.
-    fn sin_tangent(&self, along: Vec2) -> f32 {
-        let (across, n) = (self.normal.xy().dot(along), self.normal.z.abs() * along.length());
-        let length = (across * across + n * n).sqrt();
-        if length == 0.0 {
+    /// It is taken for every snapped sample anew, as NVIDIA's sample does for high quality, so that a plane never blocks
+    /// itself: the tangent T is the step in the picture plane, moved along the line of sight onto the tangent plane.
+    fn sin_tangent(&self, way: Vec2) -> f32 {
+        let step = Vec3::new(way.x, -way.y, 0.0);
+        let facing = self.normal.dot(self.sight);
+        // A shading normal that faces away has no tangent plane to see.
+        if facing >= 0.0 {
             return 1.0;
         }
-        let (sin, cos) = (-across / length, n / length);
+        let tangent = step - self.sight * (self.normal.dot(step) / facing);
+        let length = tangent.length();
+        let (sin, cos) = (-tangent.z / length, tangent.xy().length() / length);
         if sin >= self.bias.x { 1.0 } else { sin * self.bias.x + cos * self.bias.y }
     }
 }

@@ -41,9 +41,13 @@ fn an_open_plane_is_open_however_it_is_seen() {
         parallel(DVec3::new(0.0, 5.0, 0.0), DOWN, (48, 32), 10.0),
         parallel(DVec3::new(0.0, 5.0, 0.0), DVec3::new(2.0, -1.0, 0.5), (48, 32), 10.0),
         perspective(DVec3::new(0.0, 2.0, 0.0), DVec3::new(3.0, 0.0, 1.0), (48, 32)),
+        // Level, and up: the normal of the floor is across the view, and away from it.
+        perspective(DVec3::new(0.0, 1.0, 0.0), DVec3::new(3.0, 1.0, 1.0), (48, 32)),
+        perspective(DVec3::new(0.0, 1.0, 0.0), DVec3::new(3.0, 1.6, 1.0), (48, 32)),
     ];
     for camera in cameras {
         let seen = see(&floor, camera, 1.0, &Settings::default());
+        assert!(seen.gbuffer.iter().filter(|pixel| pixel.is_surface()).count() > 300);
         assert!(raw(&default(), &seen.screen).iter().all(|o| *o == 1.0));
         // Without a bias only rounding is left.
         let unbiased = raw(&Hbao { angle_bias: 0.0, ..default() }, &seen.screen);

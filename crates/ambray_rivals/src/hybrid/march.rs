@@ -29,15 +29,24 @@ pub(super) enum Verdict {
     Unknown,
 }
 
-/// The surfaces that the camera sees.
+/// The piece of a plane that a pixel shows.
 #[derive(Clone, Copy, Debug)]
+struct Facet {
+    position: Vec3,
+    /// Unit geometric normal towards the viewer; 0 where nothing is seen, which nothing is behind.
+    normal: Vec3,
+}
+
+/// The surfaces that the camera sees.
+#[derive(Clone, Debug)]
 pub(super) struct DepthBuffer<'a> {
-    pub(super) camera: &'a Camera,
-    pub(super) gbuffer: &'a [GBufferPixel],
+    camera: &'a Camera,
+    /// Apart from the G-buffer, whose pixels are many times as large.
+    facets: Vec<Facet>,
     /// Steps of a ray, at most.
-    pub(super) steps: u32,
+    steps: u32,
     /// How far behind the edge of what is seen a ray still hits it, scene units of depth.
-    pub(super) thickness: f32,
+    thickness: f32,
 }
 
 /// The part of a ray inside the picture. It is a line there, along which s goes from 0 to 1.
@@ -81,15 +90,24 @@ impl Segment {
 }
 
 /// A place on a ray that is behind what is seen there.
-struct Behind<'a> {
+struct Behind {
     s: f32,
     /// What is seen there.
-    seen: &'a GBufferPixel,
+    seen: Facet,
     /// Signed distance from its tangent plane, below 0.
     height: f32,
 }
 
 impl<'a> DepthBuffer<'a> {
+    /// What `camera` sees.
+    pub(super) fn new(camera: &'a Camera, gbuffer: &[GBufferPixel], steps: u32, thickness: f32) -> Self {
+        let facet = |pixel: &GBufferPixel| {
+            let normal = if pixel.is_surface() { pixel.geometric_normal } else { Vec3::ZERO };
+            Facet { position: pixel.position, normal }
+        };
+        Self { camera, facets: gbuffer.iter().map(facet).collect(), steps, thickness }
+    }
+
     /// Follows `ray`, which starts on something seen.
     pub(super) fn march(&self, ray: &Ray) -> Verdict {
         let Some(segment) = self.segment(ray) else { return Verdict::Unknown };
@@ -126,21 +144,18 @@ impl<'a> DepthBuffer<'a> {
     ///
     /// A pixel shows a piece of a plane, through its own point with its geometric normal. So rays over a plane never go behind
     /// it, however coarse the pixels are.
-    fn behind(&self, segment: &Segment, s: f32) -> Option<Behind<'a>> {
+    fn behind(&self, segment: &Segment, s: f32) -> Option<Behind> {
         let (width, height) = self.camera.size();
         let pixel =
             segment.pixel(s).round().clamp(Vec2::ZERO, Vec2::new((width - 1) as f32, (height - 1) as f32));
-        let seen = &self.gbuffer[pixel.y as usize * width as usize + pixel.x as usize];
-        if !seen.is_surface() {
-            return None;
-        }
+        let seen = self.facets[pixel.y as usize * width as usize + pixel.x as usize];
         let at = segment.ray.origin + segment.ray.direction * segment.distance(s);
-        let height = seen.geometric_normal.dot(at - seen.position);
+        let height = seen.normal.dot(at - seen.position);
         (height < 0.0).then_some(Behind { s, seen, height })
     }
 
     /// What happened between `front`, where the ray was in front of what is seen, and `behind`.
-    fn crossing(&self, segment: &Segment, mut front: f32, mut behind: Behind<'a>) -> Verdict {
+    fn crossing(&self, segment: &Segment, mut front: f32, mut behind: Behind) -> Verdict {
         for _ in 0..REFINEMENTS {
             let middle = 0.5 * (front + behind.s);
             match self.behind(segment, middle) {
@@ -150,7 +165,7 @@ impl<'a> DepthBuffer<'a> {
         }
         let (before, after) = (segment.distance(front), segment.distance(behind.s));
         // Through the plane of what is seen: the hit is there, unless that is long before, where something else was seen.
-        let steepness = -behind.seen.geometric_normal.dot(segment.ray.direction);
+        let steepness = -behind.seen.normal.dot(segment.ray.direction);
         let through = after + behind.height / steepness;
         if steepness > 0.0 && through >= before - (after - before) {
             return Verdict::Hit(through.max(0.0));
@@ -161,13 +176,14 @@ impl<'a> DepthBuffer<'a> {
 
     /// Whether `ray` is inside what is seen at `distance`, its thickness being as given: deeper than its front by more than
     /// that may be wrong within a pixel, as beside the outline of a ball, whose planes reach past it.
-    fn is_within(&self, ray: &Ray, behind: &Behind<'_>, distance: f32) -> bool {
+    fn is_within(&self, ray: &Ray, behind: &Behind, distance: f32) -> bool {
         let at = ray.origin + ray.direction * distance;
-        let (sight, normal) = (self.sight(at), behind.seen.geometric_normal);
+        let (sight, normal) = (self.sight(at), behind.seen.normal);
         let facing = -normal.dot(sight);
         let depth = -behind.height / facing;
         let tangent = normal.cross(sight).length() / facing;
-        facing > 0.0 && depth > tangent * self.camera.footprint(behind.seen.depth) && depth <= self.thickness
+        let pixel = self.camera.footprint(self.camera.depth(behind.seen.position));
+        facing > 0.0 && depth > tangent * pixel && depth <= self.thickness
     }
 
     /// Direction in which the camera sees the point `at`, per unit of depth.

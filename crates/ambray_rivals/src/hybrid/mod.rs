@@ -80,7 +80,7 @@ impl Hybrid {
         control: &Control<'_>,
     ) -> Result<HybridEstimate, Cancelled> {
         let thickness = self.thickness.unwrap_or(AUTO_THICKNESS * screen.radius);
-        let depths = DepthBuffer { camera: screen.camera(), gbuffer, steps: self.steps, thickness };
+        let depths = DepthBuffer::new(screen.camera(), gbuffer, self.steps, thickness);
         let (width, _) = screen.size();
         let (mut openness, mut rays) = (vec![1.0; gbuffer.len()], vec![0; gbuffer.len()]);
         let rows = openness.par_chunks_mut(width).zip(rays.par_chunks_mut(width)).enumerate();
