@@ -132,8 +132,9 @@ impl Surroundings<'_> {
         let (mut blocked, mut above, mut sin_horizon) = (0.0, 0.0, -1.0);
         for step in 0..steps.count {
             let place = self.pixel + direction * ((step as f32 + 1.0 + start) * steps.pixels);
-            let snapped = place.round();
-            let Some(offset) = self.offset_to(snapped) else { continue };
+            let (x, y) = Screen::nearest(place);
+            let snapped = Vec2::new(x as f32, y as f32);
+            let Some(offset) = self.offset_to(snapped, self.screen.depth_at(x, y)) else { continue };
             let square = offset.length_squared() / (self.screen.radius * self.screen.radius);
             // Samples outside the radius have no influence.
             if square >= 1.0 {
@@ -149,12 +150,11 @@ impl Surroundings<'_> {
         blocked
     }
 
-    /// Vector from the pixel to what is seen at the pixel `place`; `None` at the pixel itself, outside the picture and where
-    /// nothing is seen.
-    fn offset_to(&self, place: Vec2) -> Option<Vec3> {
-        let depth = self.screen.depth_at(place.x as i32, place.y as i32)?;
-        let is_sample = depth.is_finite() && place != self.pixel;
-        is_sample.then(|| self.screen.unproject(place, depth) - self.position)
+    /// Vector from the pixel to what is seen at the pixel `place` at `depth`; `None` at the pixel itself, outside the picture and
+    /// where nothing is seen.
+    fn offset_to(&self, place: Vec2, depth: Option<f32>) -> Option<Vec3> {
+        let depth = depth.filter(|depth| depth.is_finite() && place != self.pixel)?;
+        Some(self.screen.unproject(place, depth) - self.position)
     }
 
     /// sin(t + bias) of the tangent plane towards the pixel that is `way` to the right and down; 1 beyond a right angle.

@@ -121,6 +121,19 @@ impl Screen {
         }
     }
 
+    /// The pixel that `pixel`, in pixels from the centre of pixel (0, 0) to the right and down, is in; it may be outside the
+    /// picture.
+    ///
+    /// Without `f32::round`, which is a call of a function where the processor is not known to have it.
+    #[must_use]
+    pub fn nearest(pixel: Vec2) -> (i32, i32) {
+        let floor = |v: f32| {
+            let towards_zero = v as i32;
+            towards_zero - i32::from(towards_zero as f32 > v)
+        };
+        (floor(pixel.x + 0.5), floor(pixel.y + 0.5))
+    }
+
     /// `value` of every pixel that sees a surface, in parallel; 1 elsewhere.
     pub fn map(
         &self,
@@ -139,5 +152,19 @@ impl Screen {
             Ok(())
         })?;
         Ok(values)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pixel_reaches_half_a_pixel_from_its_centre() {
+        for (place, pixel) in
+            [(0.0, 0), (0.49, 0), (0.5, 1), (-0.5, 0), (-0.51, -1), (-1.6, -2), (799.7, 800)]
+        {
+            assert_eq!(Screen::nearest(Vec2::new(place, -3.0)), (pixel, -3), "{place}");
+        }
     }
 }

@@ -84,8 +84,8 @@ impl Ssao {
 
 /// Depth seen at the pixel next to `pixel`; `None` outside the picture, where nothing can block.
 fn seen_at(screen: &Screen, pixel: Vec2) -> Option<f32> {
-    let nearest = pixel.round().as_ivec2();
-    screen.depth_at(nearest.x, nearest.y)
+    let (x, y) = Screen::nearest(pixel);
+    screen.depth_at(x, y)
 }
 
 /// Unit vector in the picture plane for two random numbers, drawn from a box as published.

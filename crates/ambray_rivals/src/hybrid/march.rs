@@ -8,6 +8,8 @@ use ambray_core::{
 };
 use glam::{Vec2, Vec3};
 
+use crate::Screen;
+
 /// Halvings of the step in which a ray went behind something: to 1/64 of it.
 const REFINEMENTS: u32 = 6;
 
@@ -43,6 +45,8 @@ pub(super) struct DepthBuffer<'a> {
     camera: &'a Camera,
     /// Apart from the G-buffer, whose pixels are many times as large.
     facets: Vec<Facet>,
+    /// Column and row of the last pixel.
+    last: (i32, i32),
     /// Steps of a ray, at most.
     steps: u32,
     /// How far behind the edge of what is seen a ray still hits it, scene units of depth.
@@ -105,7 +109,9 @@ impl<'a> DepthBuffer<'a> {
             let normal = if pixel.is_surface() { pixel.geometric_normal } else { Vec3::ZERO };
             Facet { position: pixel.position, normal }
         };
-        Self { camera, facets: gbuffer.iter().map(facet).collect(), steps, thickness }
+        let (width, height) = camera.size();
+        let last = (width as i32 - 1, height as i32 - 1);
+        Self { camera, facets: gbuffer.iter().map(facet).collect(), last, steps, thickness }
     }
 
     /// Follows `ray`, which starts on something seen.
@@ -145,10 +151,10 @@ impl<'a> DepthBuffer<'a> {
     /// A pixel shows a piece of a plane, through its own point with its geometric normal. So rays over a plane never go behind
     /// it, however coarse the pixels are.
     fn behind(&self, segment: &Segment, s: f32) -> Option<Behind> {
-        let (width, height) = self.camera.size();
-        let pixel =
-            segment.pixel(s).round().clamp(Vec2::ZERO, Vec2::new((width - 1) as f32, (height - 1) as f32));
-        let seen = self.facets[pixel.y as usize * width as usize + pixel.x as usize];
+        // Rounding may put the end just outside the picture.
+        let (x, y) = Screen::nearest(segment.pixel(s));
+        let (x, y) = (x.clamp(0, self.last.0), y.clamp(0, self.last.1));
+        let seen = self.facets[y as usize * (self.last.0 as usize + 1) + x as usize];
         let at = segment.ray.origin + segment.ray.direction * segment.distance(s);
         let height = seen.normal.dot(at - seen.position);
         (height < 0.0).then_some(Behind { s, seen, height })
