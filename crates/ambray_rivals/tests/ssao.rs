@@ -151,16 +151,16 @@ fn what_is_hidden_is_not_seen() {
 
 #[test]
 fn what_is_far_in_front_casts_a_halo() {
-    // A sheet two radii above the floor takes no light within the radius, but dz = 2R still counts smoothstep(1/2) = 1/2 for
+    // A sheet three radii above the floor takes no light within the radius, but dz = 3R still counts smoothstep(1/3) = 7/27 for
     // the points that it covers. Half a pixel or δ = 1/40 beside its edge, those are the points with a coordinate below −δ. A
     // coordinate of a direction is even in [−1, 1] (but for the corners of the box), so they are the share (1 − δ E[1/s])/2;
-    // with s = 0.1 + 0.9 u², E[1/s] = atan(3)/0.3 = 4.16, and openness is 1 − 0.448/2 = 0.776.
-    let scene = Scene(vec![Shape::level(0.0, -50.0, 50.0), Shape::level(2.0, -50.0, 0.0)]);
+    // with s = 0.1 + 0.9 u², E[1/s] = atan(3)/0.3 = 4.16, and openness is 1 − 0.448 · 7/27 = 0.884.
+    let scene = Scene(vec![Shape::level(0.0, -50.0, 50.0), Shape::level(3.0, -50.0, 0.0)]);
     let camera = parallel(DVec3::new(0.0, 5.0, 0.0), DOWN, (80, 60), 20.0);
     let values = |seed| raw(&default(), &see(&scene, camera, 1.0, &Settings { seed, ..truth() }).screen);
     let seen = see(&scene, camera, 1.0, &truth());
     let halo = (0..32).map(|seed| column(&seen, &values(seed), 40)).sum::<f64>() / 32.0;
-    assert!((halo - 0.776).abs() < 0.01, "{halo}");
+    assert!((halo - 0.884).abs() < 0.01, "{halo}");
     assert_eq!(column(&seen, &common::traced(&scene, &seen, &truth()), 40), 1.0);
     assert_eq!(column(&seen, &values(0), 65), 1.0);
 }

@@ -212,3 +212,45 @@ fn leaves(from: Vec2, to: Vec2, size: Vec2) -> Option<f32> {
     };
     starts_inside.then(|| along(from.x, to.x, low.x, high.x).min(along(from.y, to.y, low.y, high.y)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is known of a ray of `length` along `direction`, from the middle of a wall a unit in front of a camera at the
+    /// origin that looks along −z, 3 × 3 pixels.
+    fn verdict(direction: Vec3, length: f32) -> Verdict {
+        let projection = Projection::Perspective { vertical_fov: 1.0 };
+        let camera = Camera::new(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, projection, 3, 3);
+        let wall = |i: u32| GBufferPixel {
+            position: camera.primary_ray(i % 3, i / 3, 0).direction * Vec3::new(1.0, 1.0, 0.0) + Vec3::NEG_Z,
+            depth: 1.0,
+            geometric_normal: Vec3::Z,
+            instance: 0,
+            ..GBufferPixel::NOTHING
+        };
+        let gbuffer: Vec<GBufferPixel> = (0..9).map(wall).collect();
+        let ray = Ray {
+            origin: Vec3::new(0.0, 0.0, -0.9999),
+            t_max: length,
+            direction: direction.normalize(),
+            seed: 0,
+        };
+        DepthBuffer::new(&camera, &gbuffer, 32, 0.1).march(&ray)
+    }
+
+    #[test]
+    fn what_goes_past_the_eye_is_not_known() {
+        assert_eq!(verdict(Vec3::Z, 0.9), Verdict::Miss);
+        assert_eq!(verdict(Vec3::Z, 1.1), Verdict::Unknown);
+        assert_eq!(verdict(Vec3::Z, f32::INFINITY), Verdict::Unknown);
+    }
+
+    #[test]
+    fn what_leaves_the_picture_is_not_known() {
+        // The picture ends tan(1/2) = 0.546 from its middle, at the depth of the wall.
+        assert_eq!(verdict(Vec3::new(1.0, 0.0, 0.01), 0.5), Verdict::Miss);
+        assert_eq!(verdict(Vec3::new(1.0, 0.0, 0.01), 0.6), Verdict::Unknown);
+        assert_eq!(verdict(Vec3::new(0.0, -1.0, 0.01), 0.6), Verdict::Unknown);
+    }
+}
