@@ -7,7 +7,7 @@ use ambray_core::{
     gather::GatherParams,
     openness::Openness,
     sampling::SampleSets,
-    settings::{Auto, ScreenQuality, Settings},
+    settings::{ScreenQuality, Settings},
 };
 use ambray_rivals::{Hbao, Hybrid, HybridEstimate};
 use common::{Scene, Seen, Shape, mean, parallel, perspective, rays, see, traced};
@@ -31,7 +31,7 @@ fn default(scene: &Scene, seen: &Seen) -> HybridEstimate {
 }
 
 fn with_thickness(thickness: f32, scene: &Scene, seen: &Seen) -> HybridEstimate {
-    let hybrid = Hybrid { thickness: Auto::Value(thickness), ..Hybrid::of(&settings()) };
+    let hybrid = Hybrid { thickness, ..Hybrid::of(&settings()) };
     estimate(&hybrid, scene, seen, &Control::default())
 }
 
@@ -146,9 +146,10 @@ fn thickness_decides_between_a_sheet_and_a_block() {
     let (apart, most) = difference(&thick.openness[rows.clone()], &true_block[rows]);
     assert!(apart < 5e-4 && most < 0.01, "{apart} {most}");
     assert_eq!(thick.rays[30 * 80 + 42], 0);
-    // By default a quarter of the radius: in between.
-    let found = default(&sheet, &seen_sheet).openness[30 * 80 + 42];
+    // A part of the height: in between. By default nothing is thick.
+    let found = with_thickness(0.25, &sheet, &seen_sheet).openness[30 * 80 + 42];
     assert!(found < true_sheet[30 * 80 + 42] && found > true_block[30 * 80 + 42], "{found}");
+    assert_eq!(default(&sheet, &seen_sheet), with_thickness(0.0, &sheet, &seen_sheet));
 }
 
 #[test]

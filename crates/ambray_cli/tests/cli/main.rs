@@ -5,6 +5,7 @@ mod animate;
 mod animated;
 mod backend;
 mod bench_and_info;
+mod compare;
 mod help;
 mod interrupt;
 mod options;

@@ -180,7 +180,7 @@ settings! {
     /// Samples of the methods ssao, hbao, gtao, bitmask and hybrid
     #[arg(value_enum)]
     screen_quality: ScreenQuality = ScreenQuality::High, "QUALITY";
-    /// Thickness of what the depth buffer shows for bitmask and hybrid, scene units, or auto (a quarter of the radius)
+    /// Thickness of what the depth buffer shows, scene units, or auto (bitmask: a quarter of the radius; hybrid: none)
     thickness: Auto<f32> = Auto::Auto, "LENGTH" in AUTO_LENGTH;
 
     ["Colour bleeding"]

@@ -10,7 +10,8 @@
 //! - It stays in front of everything seen, to its end: a miss, since that space is empty.
 //! - It leaves the picture: not known.
 //!
-//! What is not known is traced, from the start of the ray. So the depth buffer saves rays, and errs only where the steps of a
+//! The thickness is 0 unless it is set, so that guesses are left to those who want them. What is not known is traced, from the
+//! start of the ray. So the depth buffer saves rays, and errs only where the steps of a
 //! ray pass over something, where a pixel shows more than a plane, or where the thickness is wrong.
 
 mod march;
@@ -21,7 +22,7 @@ use ambray_core::{
     frame::GBufferPixel,
     gather::{GatherParams, ShadedPoint},
     sampling::PixelKey,
-    settings::{Auto, ScreenQuality, Settings},
+    settings::{ScreenQuality, Settings},
     trace::{Hit, Ray, World},
 };
 use rayon::prelude::*;
@@ -32,16 +33,13 @@ use march::{DepthBuffer, Verdict};
 /// Rays that are traced at once, at most.
 const BATCH_RAYS: usize = 8192;
 
-/// Thickness for `auto`, in radii.
-const AUTO_THICKNESS: f32 = 0.25;
-
 /// Ray-traced ambient occlusion that asks the depth buffer first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hybrid {
     /// Steps of a ray through the picture, at most.
     pub steps: u32,
-    /// Thickness of what is seen where rays pass behind its edges, scene units, or a quarter of the radius.
-    pub thickness: Auto<f32>,
+    /// Thickness of what is seen where rays pass behind its edges, scene units; 0 traces all rays that do.
+    pub thickness: f32,
 }
 
 /// What [`Hybrid`] finds.
@@ -63,7 +61,7 @@ impl Hybrid {
             ScreenQuality::High => 32,
             ScreenQuality::Ultra => 128,
         };
-        Self { steps, thickness: settings.thickness.clone() }
+        Self { steps, thickness: settings.thickness.unwrap_or(0.0) }
     }
 
     /// Openness of every pixel of `gbuffer`, which is the one of `screen`, by the rays of `params` in `world`. The chords of
@@ -79,8 +77,7 @@ impl Hybrid {
         params: &GatherParams<'_>,
         control: &Control<'_>,
     ) -> Result<HybridEstimate, Cancelled> {
-        let thickness = self.thickness.unwrap_or(AUTO_THICKNESS * screen.radius);
-        let depths = DepthBuffer::new(screen.camera(), gbuffer, self.steps, thickness);
+        let depths = DepthBuffer::new(screen.camera(), gbuffer, self.steps, self.thickness);
         let (width, _) = screen.size();
         let (mut openness, mut rays) = (vec![1.0; gbuffer.len()], vec![0; gbuffer.len()]);
         let rows = openness.par_chunks_mut(width).zip(rays.par_chunks_mut(width)).enumerate();
