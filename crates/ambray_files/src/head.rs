@@ -17,7 +17,7 @@ pub const SCENE_KEYWORD: &str = "ambray:scene";
 pub const SOFTWARE: &str = concat!("ambray ", env!("CARGO_PKG_VERSION"));
 
 /// Everything that is read stands before the pixels, within so many bytes.
-const LARGEST_HEAD: u64 = 1 << 20;
+pub(crate) const LARGEST_HEAD: u64 = 1 << 20;
 const PNG_SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
 const EXR_SIGNATURE: &[u8] = b"\x76\x2f\x31\x01";
 

@@ -7,7 +7,7 @@ use png::{BitDepth, ColorType, Compression, Encoder, SrgbRenderingIntent};
 
 /// Bits of a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Bits {
+pub enum Bits {
     /// 8 bits.
     Eight,
     /// 16 bits.
@@ -15,7 +15,7 @@ pub(crate) enum Bits {
 }
 
 /// Writes `picture` with `texts` as keyword and text.
-pub(crate) fn write(
+pub fn write(
     output: impl Write,
     (width, height): (u32, u32),
     picture: &Picture,
