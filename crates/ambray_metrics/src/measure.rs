@@ -83,6 +83,12 @@ measures! {
 }
 
 impl Measure {
+    /// Whether it needs a reference after the filter of the estimate, besides the pair.
+    #[must_use]
+    pub const fn needs_filter(self) -> bool {
+        matches!(self, Self::SamplingPart | Self::FilterLoss | Self::Grain | Self::PatternLeft)
+    }
+
     /// Whether `value` is as good as `tolerance` or better. Nothing is as good as NaN, nor is NaN as good as anything.
     #[must_use]
     pub fn is_within(self, value: f64, tolerance: f64) -> bool {
