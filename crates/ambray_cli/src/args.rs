@@ -3,6 +3,7 @@
 mod animate;
 mod backend;
 mod compare;
+mod diff;
 mod notes;
 mod sequence;
 mod view;
@@ -19,11 +20,12 @@ use clap::{
 };
 
 pub use animate::{AnimateArgs, Updates, UpdatesArgs};
-use notes::{COMPARE_NOTES, EXAMPLES, POINTS_HELP, PRECEDENCE, RENDER_NOTES, VIEW_NOTES};
+use notes::{COMPARE_NOTES, DIFF_NOTES, EXAMPLES, POINTS_HELP, PRECEDENCE, RENDER_NOTES, VIEW_NOTES};
 
 pub use ambray_files::{Format, Rate};
 pub use backend::{Backend, BackendArgs, DeviceArgs, Grouping, GroupingArgs, Trace};
 pub use compare::CompareArgs;
+pub use diff::DiffArgs;
 pub use sequence::{Frames, SequenceArgs};
 pub use view::ViewArgs;
 
@@ -55,6 +57,9 @@ pub enum Command {
     /// Measure the time of whole frames
     #[command(after_long_help = PRECEDENCE)]
     Bench(Box<BenchArgs>),
+    /// Say how far a picture is from another, layer by layer
+    #[command(after_long_help = DIFF_NOTES)]
+    Diff(Box<DiffArgs>),
     /// Say what is in a scene; without one, about the program and the machine
     Info(InfoArgs),
     /// Print a script that completes ambray's options in a shell

@@ -1,6 +1,6 @@
 //! Errors on their way to the user: one line each, a hint below, the exit code.
 
-use std::{io, process::ExitCode};
+use std::{fmt, io, process::ExitCode};
 
 use ambray_files::hint_of;
 pub use ambray_files::{Problems, with_hint};
@@ -10,6 +10,8 @@ use crate::{
     terminal::{self, one_line},
 };
 
+/// Exit code where pictures differ by more than the tolerance.
+pub const EXIT_OVER_TOLERANCE: u8 = 1;
 /// Exit code of every error.
 pub const EXIT_ERROR: u8 = 2;
 /// Exit code after Ctrl-C, as shells have it: 128 + SIGINT.
@@ -28,11 +30,36 @@ pub fn report(error: &anyhow::Error) -> ExitCode {
         terminal::say("ambray: interrupted");
         return ExitCode::from(EXIT_INTERRUPTED);
     }
+    if let Some(OverTolerance(told)) = error.downcast_ref() {
+        told.iter().for_each(|line| terminal::say(line));
+        return ExitCode::from(EXIT_OVER_TOLERANCE);
+    }
     for line in lines(error) {
         terminal::say(&line);
     }
     ExitCode::from(EXIT_ERROR)
 }
+
+/// Pictures differ by more than the tolerance: the answer to a question rather than an error.
+#[derive(Debug)]
+pub struct OverTolerance(Option<String>);
+
+impl OverTolerance {
+    /// The `first` of what is over the tolerance, and how much `more` there is; nothing is said if `quiet`.
+    #[must_use]
+    pub fn new(first: &str, more: usize, quiet: bool) -> Self {
+        let more = if more == 0 { String::new() } else { format!(" (and {more} more)") };
+        Self((!quiet).then(|| format!("ambray: {}{more}", one_line(first))))
+    }
+}
+
+impl fmt::Display for OverTolerance {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.0.as_deref().unwrap_or("over the tolerance"))
+    }
+}
+
+impl std::error::Error for OverTolerance {}
 
 /// The lines that tell about `error`.
 fn lines(error: &anyhow::Error) -> Vec<String> {

@@ -23,7 +23,7 @@ use std::{ffi::OsString, process::ExitCode};
 use args::Command;
 
 /// Runs the program with `arguments`, the program's name first; prints errors and returns the exit code:
-/// 0 done, 2 error, 130 interrupted.
+/// 0 done, 1 over the tolerance, 2 error, 130 interrupted.
 pub fn run<I, T>(arguments: I) -> ExitCode
 where
     I: IntoIterator<Item = T>,
@@ -55,6 +55,7 @@ fn dispatch(command: &Command) -> anyhow::Result<()> {
         Command::Query(args) => commands::query::run(args),
         Command::Compare(args) => commands::compare::run(args),
         Command::Bench(args) => commands::bench::run(args),
+        Command::Diff(args) => commands::diff::run(args),
         Command::Info(args) => commands::info::run(args),
         Command::Completions(args) => commands::documents::completions(args),
         Command::Man => commands::documents::man(),

@@ -42,7 +42,7 @@ pub fn one_line(text: &str) -> String {
 }
 
 /// `text` with its control characters spelled out, but ends of lines: names from files must not command the terminal.
-fn harmless(text: &str) -> Cow<'_, str> {
+pub(crate) fn harmless(text: &str) -> Cow<'_, str> {
     let is_command = |c: char| c.is_control() && c != '\n';
     if !text.contains(is_command) {
         return Cow::Borrowed(text);

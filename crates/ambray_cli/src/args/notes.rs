@@ -16,10 +16,27 @@ Examples:
   ambray compare --paper                       the paper's figures, made again and measured
   ambray bench --frames 200 --json
   ambray bench flock --animate                 what it costs to follow an animation
+  ambray diff picture.exr truth.exr --measure flip --tolerance 0.05 -o error.png
   ambray info scene.glb                        what is in it: meshes, lights, cameras, animations
   ambray info --devices                        list the Vulkan devices
 
-Exit codes: 0 done, 2 error, 130 interrupted.";
+Exit codes: 0 done, 1 over the tolerance of ambray diff, 2 error, 130 interrupted.";
+
+pub(super) const DIFF_NOTES: &str = "\
+Measures, over all pixels and all channels of a layer:
+  rmse, bias, p99, largest   in the unit of the values; bias is the mean of PICTURE minus REFERENCE
+  PSNR                       decibel, for a peak of 1
+  FLIP                       of what is seen at 67 pixels a degree, rounded to 8 bits (Andersson et al. 2020)
+  SSIM                       of what is seen, Gaussian window of 11 pixels (Wang et al. 2004)
+  edges, flat                RMSE where REFERENCE steps by more than 0.08 from pixel to pixel, and elsewhere
+Values of PNG are display values from 0 to 1. Values of OpenEXR are linear; FLIP and SSIM see colours with exposure and tone \
+map of REFERENCE, openness as grey. Depths, normals, positions and indices have no PSNR, FLIP, SSIM and edges.
+
+Equal infinities agree. Pixels that are infinite or not a number on one side alone are counted, left out of the numbers, and \
+over every tolerance.
+
+Exit codes: 0 within the tolerance, 1 over it, 2 error.
+";
 
 pub(super) const POINTS_HELP: &str = "\
 Points in the scene: CSV columns x,y,z,nx,ny,nz and optionally class (0 to 15), with or without a header, or JSON \

@@ -5,6 +5,7 @@ pub mod bench;
 pub mod compare;
 mod cost;
 mod devices;
+pub mod diff;
 pub mod documents;
 pub mod info;
 mod movement;

@@ -12,6 +12,7 @@ fn help_names_commands_examples_and_exit_codes() {
         "view",
         "query",
         "bench",
+        "diff",
         "info",
         "completions",
         "ambray render scene.glb",
@@ -70,6 +71,9 @@ fn every_option_of_the_help_is_accepted() {
                 let mut line = vec!["ambray", sub.get_name(), flag.as_str()];
                 if sub.get_name() == "query" && long != "points" {
                     line.push("--points=-");
+                }
+                if sub.get_name() == "diff" {
+                    line.extend(["a.png", "b.png"]);
                 }
                 assert!(parse_from(&line).is_ok(), "{line:?}: {}", parse_from(&line).unwrap_err());
             }

@@ -6,6 +6,7 @@ mod animated;
 mod backend;
 mod bench_and_info;
 mod compare;
+mod diff;
 mod help;
 mod interrupt;
 mod options;

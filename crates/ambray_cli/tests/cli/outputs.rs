@@ -51,7 +51,7 @@ fn planes_become_png_files() {
 }
 
 /// The channels of an EXR file with their values.
-fn channels(bench: &Bench, name: &str) -> Vec<(String, Vec<f32>)> {
+pub(super) fn channels(bench: &Bench, name: &str) -> Vec<(String, Vec<f32>)> {
     let image = exr::prelude::read_first_flat_layer_from_file(bench.path(name)).expect("an EXR file");
     assert_eq!((image.layer_data.size.0, image.layer_data.size.1), (64, 36));
     let channels = image.layer_data.channel_data.list.into_iter().map(|channel| match channel.sample_data {
