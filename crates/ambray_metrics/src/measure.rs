@@ -70,16 +70,16 @@ measures! {
     Rmse = "rmse", "RMSE", "", 5, Smaller: "Root mean square error, in the unit of the values.";
     Psnr = "psnr", "PSNR", "dB", 2, Larger: "Peak signal-to-noise ratio for a peak of 1; infinite for equal maps.";
     Bias = "bias", "bias", "", 5, NearerZero: "Mean of estimate minus reference: above 0 where the estimate is too bright on the whole.";
-    P99 = "p99", "p99", "", 4, Smaller: "Absolute error that 99 % of the pixels do not exceed.";
-    Max = "max", "largest", "", 4, Smaller: "Largest absolute error.";
+    P99 = "p99", "p99", "", 4, Smaller: "Absolute error that 99 % of the values do not exceed.";
+    Max = "max", "max", "", 4, Smaller: "Largest absolute error.";
     Flip = "flip", "FLIP", "", 4, Smaller: "Difference seen when both alternate on a screen of 67 pixels a degree, 0 to 1 (Andersson et al. 2020).";
     Ssim = "ssim", "SSIM", "", 4, Larger: "Structural similarity, at most 1 (Wang et al. 2004).";
-    EdgeRmse = "edge-rmse", "edges", "", 5, Smaller: "Root mean square error at edges of the reference: lost detail.";
-    FlatRmse = "flat-rmse", "flat", "", 5, Smaller: "Root mean square error away from edges of the reference: noise.";
-    SamplingPart = "sampling-part", "sampling", "", 5, Smaller: "Root mean square error against the filtered reference: what the few rays cost, apart from the filter.";
+    EdgeRmse = "edge-rmse", "edge RMSE", "", 5, Smaller: "Root mean square error at edges of the reference: lost detail.";
+    FlatRmse = "flat-rmse", "flat RMSE", "", 5, Smaller: "Root mean square error away from edges of the reference: noise.";
+    SamplingPart = "sampling-part", "sampling part", "", 5, Smaller: "Root mean square error against the filtered reference: what the few rays cost, apart from the filter.";
     FilterLoss = "filter-loss", "filter loss", "", 5, Smaller: "Root mean square error of the filtered reference: what the filter costs, however many the rays.";
     Grain = "grain", "grain", "", 5, Smaller: "Root mean square of the error left by the filter, without its mean over 9 × 9 pixels.";
-    PatternLeft = "pattern-left", "pattern", "", 1, Smaller: "Power of the error at the frequencies of the interleaved pattern over that around them; noise gives a few.";
+    PatternLeft = "pattern-left", "pattern left", "", 1, Smaller: "Power of the error at the frequencies of the interleaved pattern over that around them; noise gives a few.";
 }
 
 impl Measure {

@@ -24,11 +24,11 @@ Exit codes: 0 done, 1 over the tolerance of ambray diff, 2 error, 130 interrupte
 
 pub(super) const DIFF_NOTES: &str = "\
 Measures, over all pixels and all channels of a layer:
-  rmse, bias, p99, largest   in the unit of the values; bias is the mean of PICTURE minus REFERENCE
-  PSNR                       decibel, for a peak of 1
-  FLIP                       of what is seen at 67 pixels a degree, rounded to 8 bits (Andersson et al. 2020)
-  SSIM                       of what is seen, Gaussian window of 11 pixels (Wang et al. 2004)
-  edges, flat                RMSE where REFERENCE steps by more than 0.08 from pixel to pixel, and elsewhere
+  rmse, bias, p99, max       in the unit of the values; bias is the mean of PICTURE minus REFERENCE
+  psnr                       decibel, for a peak of 1
+  flip                       of what is seen at 67 pixels a degree, rounded to 8 bits (Andersson et al. 2020)
+  ssim                       of what is seen, Gaussian window of 11 pixels (Wang et al. 2004)
+  edge-rmse, flat-rmse       RMSE where REFERENCE steps by more than 0.08 from pixel to pixel, and elsewhere
 Values of PNG are display values from 0 to 1. Values of OpenEXR are linear; FLIP and SSIM see colours with exposure and tone \
 map of REFERENCE, openness as grey. Depths, normals, positions and indices have no PSNR, FLIP, SSIM and edges.
 

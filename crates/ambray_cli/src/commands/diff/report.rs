@@ -76,7 +76,8 @@ impl DiffReport {
         if let Some(settings) = self.settings.as_ref().filter(|settings| !settings.is_empty()) {
             let _ = writeln!(text, "\nsettings differ:");
             for setting in settings {
-                let _ = writeln!(text, "  {} {}, {}", setting.name, setting.picture, setting.reference);
+                let _ =
+                    writeln!(text, "  {} {} against {}", setting.name, setting.picture, setting.reference);
             }
         }
         text
@@ -95,7 +96,7 @@ impl DiffReport {
             row.push(after.to_owned());
             row
         };
-        let mut rows = vec![ends(&["layer", "differ"], measures.iter().map(title).collect(), "largest at")];
+        let mut rows = vec![ends(&["layer", "differ"], measures.iter().map(title).collect(), "max at")];
         for layer in &self.layers {
             let cell = |&measure: &Measure| {
                 layer.measures.get(measure).map_or_else(|| "-".to_owned(), |value| number(measure, value))
