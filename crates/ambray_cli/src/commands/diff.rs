@@ -179,12 +179,12 @@ fn failures(layers: &[Compared], measure: Measure, tolerance: f64) -> anyhow::Re
     Ok(failures)
 }
 
-/// The settings that a picture holds, if it holds any that this version reads.
+/// The settings that a picture holds, if it holds any that this version reads and allows.
 fn settings_of(planes: &Planes) -> Option<Settings> {
     let file = settings_file::parse(planes.head.settings.as_deref()?).ok()?;
     let mut settings = Settings::default();
     file.patch.apply(&mut settings);
-    Some(settings)
+    settings.validate().is_empty().then_some(settings)
 }
 
 /// Settings in which the pictures differ, `None` unless both hold theirs.
