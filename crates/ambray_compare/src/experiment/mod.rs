@@ -110,17 +110,19 @@ pub fn run(
         rows.push(row);
     }
     bench.time(&subjects, &mut rows, options.runs)?;
-    let mut series = Vec::new();
-    for subject in &subjects {
-        let mut line = Vec::new();
-        let efforts: Vec<_> =
-            subject.efforts(&options.rays).into_iter().map(|effort| subject.with(effort)).collect();
-        for subject in &efforts {
-            line.push(bench.measure(subject)?.0);
-        }
-        bench.time(&efforts, &mut line, options.runs.div_ceil(3))?;
-        series.push(line);
+    let efforts: Vec<Vec<Subject>> = subjects
+        .iter()
+        .map(|subject| {
+            subject.efforts(&options.rays).into_iter().map(|effort| subject.with(effort)).collect()
+        })
+        .collect();
+    let mut points = Vec::new();
+    for subject in efforts.iter().flatten() {
+        points.push(bench.measure(subject)?.0);
     }
+    bench.time(&efforts.concat(), &mut points, options.runs.div_ceil(3))?;
+    let mut points = points.into_iter();
+    let series = efforts.iter().map(|line| points.by_ref().take(line.len()).collect()).collect();
     let view = view.expect("Ambray itself is always a subject");
     let sequence = match &options.sequence {
         Some(sequence) => {
@@ -223,7 +225,7 @@ impl Seen {
         let Subject { name, settings } = subject;
         let measures = &row.measures;
         let caption = format!(
-            "{}; RMSE {:.4}, bias {:+.4}",
+            "{} RMSE {:.4}, bias {:+.4}.",
             About::of(settings.method).text,
             measures.rmse,
             measures.bias

@@ -9,7 +9,8 @@ fn logarithmic(title: &str) -> Axis {
     Axis { title: title.to_owned(), logarithmic: true }
 }
 
-/// A series a subject, at the points that `point` finds.
+/// A series a subject, at the points that `point` finds. Subjects that trace rays come first, so that each has the same colour
+/// in plots that leave the others out.
 fn series(outcome: &Outcome, point: impl Fn(&Row) -> (f64, f64)) -> Vec<Series> {
     let of = |line: &Vec<Row>| {
         let label = |row: &Row| {
@@ -22,7 +23,9 @@ fn series(outcome: &Outcome, point: impl Fn(&Row) -> (f64, f64)) -> Vec<Series> 
             labels: line.iter().map(label).collect(),
         }
     };
-    outcome.series.iter().map(of).collect()
+    let is_traced = |line: &&Vec<Row>| line.iter().any(|row| row.rays_per_pixel > 0.0);
+    let (traced, others): (Vec<_>, Vec<_>) = outcome.series.iter().partition(is_traced);
+    traced.into_iter().chain(others).map(of).collect()
 }
 
 /// The same without methods that trace no rays.

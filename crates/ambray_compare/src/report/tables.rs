@@ -67,9 +67,9 @@ pub(super) fn rows(rows: &[Row]) -> Table {
     let mut columns = vec![
         plain("method", "", Best::None),
         plain("effort", "Rays a pixel, or the quality of a method that takes none", Best::None),
-        plain("rays/pixel", "Ambient rays that were traced, chords included", Best::Smallest),
+        plain("rays/pixel", "Ambient rays that were traced, chords included", Best::None),
         plain("time, ms", "Median time of the method and its filter", Best::Smallest),
-        plain("p95, ms", "Time that 95 % of the runs did not exceed", Best::Smallest),
+        plain("p95, ms", "Time that 95 % of the runs did not exceed", Best::None),
         plain("raw RMSE", "Root mean square error before the filter", Best::Smallest),
     ];
     columns.extend(SHOWN.iter().map(|&measure| column(measure)));
