@@ -1,5 +1,6 @@
 //! A real browser, to open pages as a reader does: Chromium without a window, driven over the Chrome DevTools protocol.
 
+mod input;
 mod page;
 mod protocol;
 pub mod report;

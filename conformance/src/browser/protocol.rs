@@ -1,4 +1,4 @@
-//! The Chrome DevTools protocol: calls with numbers and their answers, and events in between, as JSON over a web socket.
+//! The Chrome DevTools protocol: numbered calls and their answers, and events in between, as JSON over a web socket.
 
 use std::{net::TcpStream, time::Duration};
 

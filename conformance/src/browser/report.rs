@@ -98,7 +98,8 @@ fn plots_are_drawn(page: &mut Page) {
             const legend = [...chart.parentElement.querySelectorAll('.legend button')];
             const alike = legend.every(button => {
                 const curve = chart.querySelector(`.series[data-series=\"${button.dataset.series}\"]`);
-                return colour(button.querySelector('.swatch')) && colour(button.querySelector('.swatch')) === colour(curve);
+                const swatch = colour(button.querySelector('.swatch'));
+                return swatch && swatch === colour(curve);
             });
             if (!alike) faults.push('the legend has other colours');
             if (cut.length) faults.push('cut: ' + cut.map(text => text.textContent));

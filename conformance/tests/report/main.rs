@@ -1,6 +1,7 @@
 //! The report of `ambray compare` in a real browser: it is dragged, zoomed, sorted and looked at as a reader would.
 #![forbid(unsafe_code)]
 
+mod data;
 mod gestures;
 mod heard;
 mod sample;
@@ -8,11 +9,18 @@ mod sample;
 use std::path::PathBuf;
 
 use ambray_compare::html::page;
-use conformance::browser::{Browser, Look, report};
+use conformance::browser::{Browser, Look, Page, report};
 
 /// Where pictures of the page are kept to be looked at.
 fn kept(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("report-{name}"))
+}
+
+/// The sample in a browser of its own.
+fn open(look: Look) -> Option<(Browser, Page)> {
+    let mut browser = Browser::start()?;
+    let page = browser.open_text(&page(&sample::document()), look);
+    Some((browser, page))
 }
 
 #[test]
@@ -66,8 +74,9 @@ fn without_script_the_page_still_shows_its_pictures_and_plots() {
     page.screenshot_all(&kept("without-script.png"));
     let clip = page.text("getComputedStyle(document.querySelector('.slider .picture.right')).clipPath");
     assert_eq!(clip, "inset(0px 0px 0px 50%)");
-    let seen = "[...document.querySelectorAll('.tools, .divider, .readout, .copy')].filter(e => e.checkVisibility()).length";
-    assert_eq!(page.number(seen), 0.0, "what does nothing is not shown");
+    let idle = "[...document.querySelectorAll('.tools, .divider, .readout, .copy')]";
+    let seen = format!("{idle}.filter(element => element.checkVisibility()).length");
+    assert_eq!(page.number(&seen), 0.0, "what does nothing is not shown");
     assert!(page.number("document.querySelector('.chart').getBoundingClientRect().width") > 300.0);
     assert!(page.text("document.querySelector('.point title').textContent").starts_with("Ambray – 1 rays"));
     report::assert_clean(&mut page);

@@ -9,8 +9,8 @@ function placeOn(stage, event) {
 }
 
 /**
- * Wheel, drag, pinch and double click on `stage` move `view`. `divide(u)` takes drags that move a divider, if there is one;
- * `hover(u, v)` is told where the pointer is, `leave()` that it has gone.
+ * Wheel, drag, pinch and double click on `stage` move `view`. `divide(u)` takes drags that move a divider, if there is
+ * one; `hover(u, v)` is told where the pointer is, `leave()` that it has gone.
  */
 function listen(stage, view, { divide, hover, leave }) {
   const pointers = new Map();
@@ -120,8 +120,8 @@ class Block {
   draw() {
     for (const svg of this.figure.querySelectorAll(".picture")) this.view.apply(svg);
     this.figure.classList.toggle("zoomed", this.view.zoom > 1);
-    const zoom = this.view.zoom;
-    this.figure.querySelector(".zoom output").textContent = `${zoom < 10 ? Math.round(zoom * 10) / 10 : Math.round(zoom)}×`;
+    const zoom = this.view.zoom < 10 ? Math.round(this.view.zoom * 10) / 10 : Math.round(this.view.zoom);
+    this.figure.querySelector(".zoom output").textContent = `${zoom}×`;
     this.read();
   }
 }

@@ -5,7 +5,7 @@ class Pixels {
     this.canvases = new Map();
   }
 
-  /** Red, green and blue of pixel (x, y), 0 to 255; nothing until the picture is decoded, after which `ready` is called. */
+  /** Red, green and blue of pixel (x, y), 0 to 255; nothing until the picture is decoded, when `ready` is called. */
   value(id, x, y, ready) {
     const canvas = this.canvases.get(id);
     if (canvas === undefined) this.decode(id, ready);
@@ -34,7 +34,10 @@ class Pixels {
 
 const pixels = new Pixels(24);
 
-/** Says which pixel is at (u, v) of `view`, and its value in each of `shown`: pairs of a name and an id; `again` when known. */
+/**
+ * Says which pixel is at (u, v) of `view`, and its value in each of `shown`: pairs of a name and an id. Calls `again` when
+ * a picture has been decoded whose value was not known.
+ */
 function readOut(line, view, u, v, shown, again) {
   // All that are shown must fit, or each would push out another for ever.
   pixels.most = Math.max(pixels.most, shown.length);
@@ -58,7 +61,8 @@ function readOut(line, view, u, v, shown, again) {
   for (const { name, value } of values) pieces.push(piece("value", `${name} ${said(value)}`));
   if (values.length === 2 && values[0].value && values[1].value) {
     const signed = (n) => (n > 0 ? `+${n}` : String(n));
-    pieces.push(piece("difference", `right − left ${values[1].value.map((n, i) => signed(n - values[0].value[i])).join(" ")}`));
+    const differences = values[1].value.map((n, i) => signed(n - values[0].value[i]));
+    pieces.push(piece("difference", `right − left ${differences.join(" ")}`));
   }
   line.replaceChildren(...pieces);
 }

@@ -47,8 +47,8 @@ pub(super) fn slider(
                 (store.shown(&pictures[right], "right"))
                 span.tag.left { (pictures[left].name) }
                 span.tag.right { (pictures[right].name) }
-                div.divider role="slider" tabindex="0" aria-orientation="horizontal" aria-valuemin="0" aria-valuemax="100"
-                    aria-valuenow="50" aria-valuetext="50 %" aria-label={ "Divider: " (caption) } {}
+                div.divider role="slider" tabindex="0" aria-orientation="horizontal" aria-label={ "Divider: " (caption) }
+                    aria-valuemin="0" aria-valuemax="100" aria-valuenow="50" aria-valuetext="50 %" {}
             }
             (readout(SLIDER_HELP))
             (text("left", &pictures[left]))

@@ -16,8 +16,8 @@ use store::Store;
 
 pub use store::pictures;
 
-/// The page of `document`. Pictures are embedded, each once; style and script are in the page; its content security policy
-/// forbids every request.
+/// The page of `document`. Pictures are embedded, each once; style and script are in the page; its content security
+/// policy forbids every request.
 #[must_use]
 pub fn page(document: &Document) -> String {
     let store = Store::new(document);

@@ -1,4 +1,5 @@
-//! What stands around the blocks of a page: its head, with the policy that nothing outside is asked for, and its contents.
+//! What stands around the blocks of a page: its head, with the policy that nothing outside is asked for, its front and
+//! its table of contents.
 
 use base64::{Engine as _, engine::general_purpose::STANDARD};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -67,7 +68,8 @@ pub(super) fn page(
 fn policy() -> String {
     let digest = |text: &str| STANDARD.encode(Sha256::digest(text));
     format!(
-        "default-src 'none'; img-src data:; style-src 'sha256-{}'; script-src 'sha256-{}'; base-uri 'none'; form-action 'none'",
+        "default-src 'none'; img-src data:; style-src 'sha256-{}'; script-src 'sha256-{}'; \
+         base-uri 'none'; form-action 'none'",
         digest(STYLE),
         digest(SCRIPT)
     )

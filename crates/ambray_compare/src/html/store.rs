@@ -40,15 +40,16 @@ impl<'a> Store<'a> {
                 defs {
                     @for picture in &self.pictures {
                         image id=(self.id(picture)) width=(picture.width) height=(picture.height)
-                            preserveAspectRatio="none" href={ "data:image/png;base64," (STANDARD.encode(&picture.png)) };
+                            preserveAspectRatio="none"
+                            href={ "data:image/png;base64," (STANDARD.encode(&picture.png)) };
                     }
                 }
             }
         }
     }
 
-    /// `picture` where it is seen, as an element of `class`. An SVG that refers to the embedded picture needs no script, can
-    /// be printed, and is enlarged by its view box.
+    /// `picture` where it is seen, as an element of `class`. An SVG that refers to the embedded picture needs no script,
+    /// can be printed, and is enlarged by its view box.
     pub(super) fn shown(&self, picture: &Picture, class: &str) -> Markup {
         html! {
             svg class={ "picture " (class) } role="img" aria-label=(picture.name) preserveAspectRatio="none"
@@ -59,8 +60,8 @@ impl<'a> Store<'a> {
     }
 }
 
-/// The pictures of `document` as files: a safe name that ends in `.png`, and the bytes. A picture that is seen several times
-/// under one name comes once; different pictures never share a name.
+/// The pictures of `document` as files: a safe name that ends in `.png`, and the bytes. A picture that is seen several
+/// times under one name comes once; different pictures never share a name.
 pub fn pictures(document: &Document) -> impl Iterator<Item = (String, &[u8])> {
     let mut names = Unique::default();
     let mut seen = HashMap::<String, Vec<&[u8]>>::new();

@@ -21,7 +21,9 @@ pub(super) fn table(table: &Table, id: &str) -> Markup {
                     tbody {
                         @for (row, best) in table.rows.iter().zip(&best) {
                             tr {
-                                @for (i, (value, best)) in row.iter().zip(best).enumerate() { (cell(value, *best, i == 0)) }
+                                @for (i, (value, best)) in row.iter().zip(best).enumerate() {
+                                    (cell(value, *best, i == 0))
+                                }
                             }
                         }
                     }
@@ -74,8 +76,8 @@ fn meanings(columns: &[Column]) -> Markup {
     }
 }
 
-/// Which cells are the best of their columns, row by row. Numbers that read the same are equally good; where all do, or where
-/// there is one only, none is marked.
+/// Which cells are the best of their columns, row by row. Numbers that read the same are equally good; where all do, or
+/// where there is one only, none is marked.
 fn best_cells(table: &Table) -> Vec<Vec<bool>> {
     let mut marks: Vec<Vec<bool>> = table.rows.iter().map(|row| vec![false; row.len()]).collect();
     for (i, column) in table.columns.iter().enumerate() {

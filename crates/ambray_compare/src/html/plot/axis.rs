@@ -68,8 +68,8 @@ impl Scale {
         (first..=last).map(tick).collect()
     }
 
-    /// Ticks at 1 … 9 times powers of ten. Powers are labelled; on less than two decades also 2 and 5; on many decades only
-    /// every so manyth power.
+    /// Ticks at 1 … 9 times powers of ten. Powers are labelled; on less than two decades also 2 and 5; on many decades
+    /// only every so manyth power.
     fn decades(&self) -> Vec<Tick> {
         let decades = self.to - self.from;
         let every = (decades / TICKS).ceil() as i32;

@@ -1,5 +1,5 @@
-//! The shapes of points. With the colours of Okabe and Ito (2008), which readers with any colour vision tell apart, no two
-//! series of a plot differ by colour alone.
+//! The shapes of points. The colours of Okabe and Ito (2008) are told apart with any colour vision; the shapes see to it
+//! that no two series of a plot differ by colour alone.
 
 use maud::{Markup, html};
 

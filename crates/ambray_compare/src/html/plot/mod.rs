@@ -74,7 +74,9 @@ fn drawing(plot: &Plot, field: &Field) -> Markup {
             }
             rect.frame x=(LEFT) y=(TOP) width=(RIGHT - LEFT) height=(BOTTOM - TOP) {}
             text.title x=((LEFT + RIGHT) / 2.0) y=(HEIGHT - 10.0) text-anchor="middle" { (plot.x.title) }
-            text.title x="0" y="0" text-anchor="middle" transform={ "translate(16 " (middle) ") rotate(-90)" } { (plot.y.title) }
+            text.title x="0" y="0" text-anchor="middle" transform={ "translate(16 " (middle) ") rotate(-90)" } {
+                (plot.y.title)
+            }
             @for (i, series) in plot.series.iter().enumerate() { (curve(plot, field, series, i)) }
         }
     }
@@ -122,7 +124,7 @@ fn said(series: &Series, i: usize) -> String {
     }
 }
 
-/// Colours repeat after seven, shapes after eight and dashes begin with the second seven, so that 56 series look different.
+/// Colours repeat after seven, shapes after eight and dashes begin with the second seven: 56 series look different.
 fn look(index: usize) -> String {
     let dashed = if (index / marker::COLOURS) % 2 == 1 { " dashed" } else { "" };
     format!("colour-{}{dashed}", index % marker::COLOURS)
@@ -172,11 +174,21 @@ fn values(plot: &Plot) -> Markup {
             summary { "Values" }
             div.wide tabindex="0" role="region" aria-label={ "Values of " (plot.caption) } {
                 table {
-                    thead { tr { th scope="col" { "Series" } th.number scope="col" { (plot.x.title) } th.number scope="col" { (plot.y.title) } } }
+                    thead {
+                        tr {
+                            th scope="col" { "Series" }
+                            th.number scope="col" { (plot.x.title) }
+                            th.number scope="col" { (plot.y.title) }
+                        }
+                    }
                     tbody {
                         @for series in &plot.series {
                             @for (i, (x, y)) in series.points.iter().enumerate() {
-                                tr { th scope="row" { (said(series, i)) } td.number { (short(*x)) } td.number { (short(*y)) } }
+                                tr {
+                                    th scope="row" { (said(series, i)) }
+                                    td.number { (short(*x)) }
+                                    td.number { (short(*y)) }
+                                }
                             }
                         }
                     }
