@@ -101,7 +101,16 @@ impl Browser {
 }
 
 impl Drop for Browser {
+    /// Asks it to end, for its helpers then end too and let go of their files; ends it by force if it does not.
     fn drop(&mut self) {
+        self.control.tell("Browser.close");
+        let start = Instant::now();
+        while start.elapsed() < Duration::from_secs(10) {
+            if !matches!(self.process.try_wait(), Ok(None)) {
+                return;
+            }
+            thread::sleep(Duration::from_millis(10));
+        }
         let _ = self.process.kill();
         let _ = self.process.wait();
     }

@@ -60,6 +60,13 @@ impl Connection {
         }
     }
 
+    /// Calls `method` if the browser still hears, and does not wait.
+    pub(super) fn tell(&mut self, method: &str) {
+        self.last += 1;
+        let text = json!({ "id": self.last, "method": method }).to_string();
+        let _ = self.socket.send(Message::text(text));
+    }
+
     /// Waits for the next event `method`.
     pub(super) fn wait_for(&mut self, method: &str) {
         loop {

@@ -119,6 +119,7 @@ fn curve(plot: &Plot, field: &Field, series: &Series, index: usize) -> Markup {
 /// The name of a series, and what its point `i` is.
 fn said(series: &Series, i: usize) -> String {
     match series.labels.get(i) {
+        Some(label) if label.starts_with(&series.name) => label.clone(),
         Some(label) if !label.is_empty() => format!("{} – {label}", series.name),
         _ => series.name.clone(),
     }

@@ -46,6 +46,16 @@ fn labels_are_escaped_and_a_single_point_has_no_line() {
 }
 
 #[test]
+fn a_label_that_names_its_series_is_not_preceded_by_the_name() {
+    let mut series = sample().series.swap_remove(0);
+    assert_eq!(said(&series, 1), "a < b – second");
+    series.labels[1] = "a < b, 8 rays".into();
+    assert_eq!(said(&series, 1), "a < b, 8 rays");
+    series.labels.clear();
+    assert_eq!(said(&series, 1), "a < b");
+}
+
+#[test]
 fn an_empty_plot_says_so() {
     let nothing = plot(&Plot::default(), "p").into_string();
     assert!(nothing.contains("Nothing was measured") && !nothing.contains("<svg"), "{nothing}");
