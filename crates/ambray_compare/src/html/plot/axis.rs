@@ -68,28 +68,34 @@ impl Scale {
         (first..=last).map(tick).collect()
     }
 
-    /// Ticks at 1 … 9 times powers of ten. Powers are labelled; on less than two decades also 2 and 5; on many decades
-    /// only every so manyth power.
+    /// Ticks at 1 … 9 times powers of ten. Powers are labelled, of many decades only every so manyth; where these are too
+    /// few, further digits are.
     fn decades(&self) -> Vec<Tick> {
-        let decades = self.to - self.from;
-        let every = (decades / TICKS).ceil() as i32;
+        let every = ((self.to - self.from) / TICKS).ceil() as i32;
         let (first, last) = (self.from.floor() as i32, self.to.ceil() as i32);
-        let mut ticks = Vec::new();
-        for exponent in first..=last {
-            for digit in 1..=9 {
-                let value = f64::from(digit) * 10_f64.powi(exponent);
-                let is_labelled = match digit {
-                    1 => exponent.rem_euclid(every) == 0,
-                    2 | 5 => decades < 2.0,
-                    _ => decades < 0.6,
-                };
-                if (0.0..=1.0).contains(&self.at(value)) && (digit == 1 || every == 1) {
-                    ticks.push(Tick { value, label: is_labelled.then(|| short(value)) });
-                }
-            }
-        }
-        ticks
+        let marks: Vec<(i32, i32)> = (first..=last)
+            .flat_map(|exponent| (1..=9).map(move |digit| (exponent, digit)))
+            .filter(|&(exponent, digit)| (0.0..=1.0).contains(&self.at(power(exponent, digit))))
+            .filter(|&(_, digit)| digit == 1 || every == 1)
+            .collect();
+        let is_labelled = |(exponent, digit): (i32, i32), digits: &[i32]| {
+            digits.contains(&digit) && exponent.rem_euclid(every) == 0
+        };
+        let enough = |digits: &&[i32]| marks.iter().filter(|&&mark| is_labelled(mark, digits)).count() >= 3;
+        let digits = LABELLED.into_iter().find(enough).unwrap_or(&[1, 2, 3, 4, 5, 6, 7, 8, 9]);
+        let tick = |mark: (i32, i32)| {
+            let value = power(mark.0, mark.1);
+            Tick { value, label: is_labelled(mark, digits).then(|| short(value)) }
+        };
+        marks.iter().copied().map(tick).collect()
     }
+}
+
+/// Leading digits that are labelled on a logarithmic axis, from many decades to few.
+const LABELLED: [&[i32]; 3] = [&[1], &[1, 2, 5], &[1, 2, 3, 5, 7]];
+
+fn power(exponent: i32, digit: i32) -> f64 {
+    f64::from(digit) * 10_f64.powi(exponent)
 }
 
 /// Whether `value` can be shown on `axis`.
@@ -130,6 +136,18 @@ mod tests {
             let scale = scale(false, values).expect("a scale");
             assert!(scale.ticks().len() >= 2, "{values:?}");
             assert!(scale.ticks().iter().all(|tick| (0.0..=1.0).contains(&scale.at(tick.value))));
+        }
+    }
+
+    #[test]
+    fn less_than_a_decade_has_labels_too() {
+        // With margins of 6 % of log₁₀(0.095 / 0.022) = 0.635 the axis is from 0.0202 to 0.1037.
+        let narrow = scale(true, &[0.022, 0.095]).expect("a scale");
+        assert_eq!(labels(&narrow), ["0.03", "0.05", "0.07", "0.1"]);
+        for tenth in 0..10 {
+            let value = 10_f64.powf(f64::from(tenth) / 10.0);
+            let labels = labels(&scale(true, &[value, value * 1.05]).expect("a scale"));
+            assert!((2..=7).contains(&labels.len()), "{value}: {labels:?}");
         }
     }
 
