@@ -4,6 +4,7 @@
 mod data;
 mod gestures;
 mod heard;
+mod measured;
 mod sample;
 
 use std::path::PathBuf;
