@@ -126,6 +126,8 @@ fn launch(program: &str, folder: &Path) -> Option<Child> {
     command.args(["--no-first-run", "--disable-background-networking", "--disable-component-update"]);
     // Small shared memory is usual in containers; colours must not depend on a screen.
     command.args(["--disable-dev-shm-usage", "--force-color-profile=srgb", "--disable-gpu"]);
+    // Without a screen there is no mouse either, unless one is promised; telephones are told otherwise.
+    command.arg("--blink-settings=primaryHoverType=2,availableHoverTypes=2,primaryPointerType=4,availablePointerTypes=4");
     command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(log).spawn().ok()
 }
 

@@ -94,6 +94,15 @@ fn keys_move_the_divider_and_choose_pictures() {
 }
 
 #[test]
+fn help_is_for_who_reads_it() {
+    let seen = "document.querySelector('.slider .readout').innerText";
+    let Some((_browser, mut page)) = open(Look::DESKTOP) else { return };
+    assert!(page.text(seen).contains("Wheel"));
+    let Some((_browser, mut page)) = open(Look::PHONE) else { return };
+    assert!(page.text(seen).starts_with("Two fingers"));
+}
+
+#[test]
 fn menus_choose_pictures() {
     let Some((_browser, mut page)) = open(Look::DESKTOP) else { return };
     page.find(".slider");
