@@ -9,6 +9,7 @@ use super::{
 use crate::{
     document::{Axis, Block, Plot, Section, Series},
     pictures, report,
+    subject::Effort,
 };
 
 /// Rays a pixel of the figure.
@@ -23,7 +24,7 @@ pub(super) fn figure(studio: &mut Studio<'_, '_>, view: &Settings) -> Result<Fig
     let truth = studio.truth(&settings)?;
     let (mut openness, mut all) = (Vec::new(), Vec::new());
     for spp in RAYS {
-        let name = if spp == 1 { "1 ray".to_owned() } else { format!("{spp} rays") };
+        let name = Effort::Rays(spp).to_string();
         let shot = studio.shoot(&name, &Settings { spp, ..settings.clone() }, &truth)?;
         openness.push(pictures::grey(&name, format!("{name}, filtered"), &shot.filtered));
         all.push(measured("6", &name, shot.measures(&truth)));
@@ -35,7 +36,7 @@ pub(super) fn figure(studio: &mut Studio<'_, '_>, view: &Settings) -> Result<Fig
     let curve = |name: &str, value: &dyn Fn(usize) -> f64| Series {
         name: name.to_owned(),
         points: (0..RAYS.len()).map(|i| (f64::from(RAYS[i]), value(i))).collect(),
-        labels: (0..RAYS.len()).map(|i| format!("{} rays: {:.5}", RAYS[i], value(i))).collect(),
+        labels: RAYS.iter().map(|&spp| Effort::Rays(spp).to_string()).collect(),
     };
     let plot = Plot {
         caption: "Error of openness against rays.".to_owned(),

@@ -12,16 +12,10 @@ fn logarithmic(title: &str) -> Axis {
 /// A series a subject, at the points that `point` finds. Subjects that trace rays come first, so that each has the same colour
 /// in plots that leave the others out.
 fn series(outcome: &Outcome, point: impl Fn(&Row) -> (f64, f64)) -> Vec<Series> {
-    let of = |line: &Vec<Row>| {
-        let label = |row: &Row| {
-            let (x, y) = point(row);
-            format!("{}, {}: {x:.3}, {y:.5}", row.name, row.effort)
-        };
-        Series {
-            name: line.first().map(|row| row.name.clone()).unwrap_or_default(),
-            points: line.iter().map(&point).collect(),
-            labels: line.iter().map(label).collect(),
-        }
+    let of = |line: &Vec<Row>| Series {
+        name: line.first().map(|row| row.name.clone()).unwrap_or_default(),
+        points: line.iter().map(&point).collect(),
+        labels: line.iter().map(|row| row.effort.to_string()).collect(),
     };
     let is_traced = |line: &&Vec<Row>| line.iter().any(|row| row.rays_per_pixel > 0.0);
     let (traced, others): (Vec<_>, Vec<_>) = outcome.series.iter().partition(is_traced);
@@ -65,7 +59,7 @@ pub(super) fn error_over_frames(moving: &Moving) -> Plot {
     let of = |(name, values): (&String, &Vec<f64>)| Series {
         name: name.clone(),
         points: values.iter().enumerate().map(|(k, &rmse)| (k as f64, rmse)).collect(),
-        labels: values.iter().enumerate().map(|(k, rmse)| format!("{name}, frame {k}: {rmse:.5}")).collect(),
+        labels: (0..values.len()).map(|k| format!("frame {k}")).collect(),
     };
     Plot {
         caption: "Error of each frame.".to_owned(),
