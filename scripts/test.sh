@@ -5,9 +5,9 @@ cd "$(dirname "$0")/.."
 
 step() { printf '\n== %s\n' "$*"; }
 
-# The conformance tests compile NVIDIA's FLIP (C++); everything else needs a linker only.
+# NVIDIA's FLIP, by which pictures are compared, is C++.
 if ! command -v c++ >/dev/null; then
-  step "installing a C++ compiler for the picture metrics of the tests"
+  step "installing a C++ compiler for the picture metrics"
   sudo=$([ "$(id -u)" = 0 ] || echo sudo)
   $sudo apt-get update -qq
   $sudo apt-get install -y -qq --no-install-recommends g++

@@ -229,22 +229,28 @@ impl Backends {
     }
 
     /// The processor beside the device that renders, for `method`, which runs there only. Made when it is first needed, and
-    /// again for another pose.
+    /// moved to where the scene is by then.
     ///
     /// # Errors
     /// If only the device was wanted.
-    pub(crate) fn beside(&self, method: Method) -> Result<Arc<CpuBackend>, RenderError> {
+    pub(crate) fn beside(&self, method: Method, threads: usize) -> Result<Arc<CpuBackend>, RenderError> {
         if !self.steps_in {
             return Err(RenderError::Method { method, reason: "runs on the processor only" });
         }
         // Whole or empty at any time, so a panic of another thread does not matter.
         let mut slot = self.aside.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((pose, cpu)) = &*slot
-            && *pose == self.pose
-        {
-            return Ok(Arc::clone(cpu));
-        }
-        let cpu = Arc::new(CpuBackend::new(self.posed_scene(), self.build));
+        let build = || Arc::new(CpuBackend::new(self.posed_scene(), self.build));
+        let cpu = match (slot.take(), &self.pose) {
+            (Some((pose, cpu)), now) if pose == *now => cpu,
+            (Some((_, mut cpu)), Some(now)) => match Arc::get_mut(&mut cpu) {
+                Some(alone) => {
+                    alone.pose(now, threads)?;
+                    cpu
+                }
+                None => build(),
+            },
+            _ => build(),
+        };
         *slot = Some((self.pose.clone(), Arc::clone(&cpu)));
         Ok(cpu)
     }

@@ -342,9 +342,10 @@ impl Renderer {
         let (view, moved) = self.prepare(settings, control)?;
         let mut frame = self.stepping_in(|backend| match backend {
             Backend::Cpu(cpu) => Ok(cpu.render(settings, &view, control)?),
-            Backend::Vulkan(_) if settings.method.is_screen_space() => {
-                Ok(self.backends.beside(settings.method)?.render(settings, &view, control)?)
-            }
+            Backend::Vulkan(_) if settings.method.is_screen_space() => Ok(self
+                .backends
+                .beside(settings.method, control.threads)?
+                .render(settings, &view, control)?),
             Backend::Vulkan(vulkan) => Ok(vulkan.render(settings, &view, control)?),
         })?;
         add(&mut frame.stats.times, &moved);

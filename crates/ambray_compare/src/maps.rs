@@ -15,6 +15,13 @@ pub fn raw(frame: &Frame) -> Map {
     openness(frame, &frame.ambient_raw)
 }
 
+/// Openness of `frame` before its filter, as far as it can be shown: GTAO leaves values above 1 to its denoiser.
+#[must_use]
+pub fn shown_raw(frame: &Frame) -> Map {
+    let Map { width, values } = raw(frame);
+    Map { width, values: values.into_iter().map(|openness| openness.min(1.0)).collect() }
+}
+
 /// Openness of `frame` after its filter.
 #[must_use]
 pub fn filtered(frame: &Frame) -> Map {

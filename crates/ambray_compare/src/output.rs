@@ -11,8 +11,18 @@ use crate::{
 #[must_use]
 pub fn csv(outcome: &Outcome) -> String {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    let first =
-        ["place", "name", "method", "effort", "rays-per-pixel", "min-ms", "median-ms", "p95-ms", "runs"];
+    let first = [
+        "place",
+        "name",
+        "method",
+        "effort",
+        "rays-per-pixel",
+        "min-ms",
+        "median-ms",
+        "p95-ms",
+        "runs",
+        "by",
+    ];
     let last = ["mean-openness", "raw-rmse", "fitted-rmse"];
     let measures = Measure::ALL.iter().map(|measure| measure.name());
     let mut write = |line: Vec<String>| writer.write_record(line).expect("memory takes everything");
@@ -56,6 +66,7 @@ fn line(place: &str, row: &Row) -> Vec<String> {
         time.median.to_string(),
         time.p95.to_string(),
         time.count.to_string(),
+        row.who.to_string(),
         row.mean_openness.to_string(),
         row.raw_rmse.to_string(),
         row.fitted_rmse.to_string(),

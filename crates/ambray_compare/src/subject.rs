@@ -1,5 +1,7 @@
 //! What is compared: methods with their settings, and where they come from.
 
+use std::collections::BTreeSet;
+
 use ambray::settings::{Method, ScreenQuality, Settings, Temporal};
 use serde::Serialize;
 
@@ -36,14 +38,17 @@ impl Subject {
         Self { name: self.name.clone(), settings }
     }
 
-    /// What makes it better and slower: each of `rays`, or all qualities.
+    /// What makes it better and slower: each of `rays` once and in order, or all qualities.
     #[must_use]
     pub fn efforts(&self, rays: &[u32]) -> Vec<Effort> {
         match self.settings.method {
             Method::Ssao | Method::Hbao | Method::Gtao | Method::Bitmask => {
                 ScreenQuality::ALL.iter().map(|&quality| Effort::Quality(quality)).collect()
             }
-            _ => rays.iter().map(|&spp| Effort::Rays(spp)).collect(),
+            _ => {
+                let rays: BTreeSet<u32> = rays.iter().copied().collect();
+                rays.into_iter().map(Effort::Rays).collect()
+            }
         }
     }
 

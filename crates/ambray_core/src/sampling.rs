@@ -137,10 +137,11 @@ impl PixelKey {
     }
 
     /// Seed of primary rays: the 16 pixels of a block share the hash and differ in the stratum
-    /// (see [`alpha_threshold`](crate::trace::alpha_threshold)).
+    /// (see [`alpha_threshold`](crate::trace::alpha_threshold)). They do not depend on the seed of the sample sets: pictures with
+    /// other seeds are estimates of the same surfaces, so that their mean converges.
     #[must_use]
-    pub const fn primary_seed(x: u32, y: u32, frame: u32, seed: u32) -> u32 {
-        (Self::new(x >> 2, y >> 2, frame, seed).hash << 4) | sample_class(x, y) as u32
+    pub const fn primary_seed(x: u32, y: u32, frame: u32) -> u32 {
+        (Self::new(x >> 2, y >> 2, frame, 0).hash << 4) | sample_class(x, y) as u32
     }
 
     /// Seed of the pixel's secondary ray number `ray`.

@@ -76,7 +76,7 @@ void pixels() {
     uint hash = pixel_hash(pixel, word(2u), word(3u));
     put(0u, sample_class(pixel));
     put(1u, hash);
-    put(2u, primary_seed(pixel, word(2u), word(3u)));
+    put(2u, primary_seed(pixel, word(2u)));
     put(3u, ray_seed(hash, word(4u)));
 }
 

@@ -18,7 +18,7 @@ pub struct CompareArgs {
     /// The scene.
     #[command(flatten)]
     pub scene: SceneArgs,
-    /// Report to write, a page that needs nothing else; the numbers are written beside it as .json and .csv
+    /// Report to write, a page that needs nothing else; beside it all numbers as .json, and those of still pictures as .csv
     #[arg(short, long, value_name = "REPORT.html", default_value = "compare.html")]
     pub output: PathBuf,
     /// Make the figures and the table of the paper instead, each with what was measured
@@ -39,7 +39,7 @@ pub struct CompareArgs {
         value_parser = |text: &str| whole::<u32>(text, 1, 100_000)
     )]
     pub runs: u32,
-    /// Compare this many frames of an animation too: flicker and ghosting
+    /// Compare this many frames of an animation too: flicker, and how late accumulated light is
     #[arg(
         long, value_name = "N", help_heading = HEADING, value_parser = |text: &str| whole::<u32>(text, 2, MOST_FRAMES)
     )]
@@ -47,7 +47,7 @@ pub struct CompareArgs {
     /// Frames a second of these, a number or a fraction such as 30000/1001 [default: 30]
     #[arg(long, value_name = "RATE", help_heading = HEADING, requires = "frames")]
     pub fps: Option<Rate>,
-    /// Standard error of the truth: rays are added until it is below, on the mean over the picture
+    /// Standard error of the truth: rays are added until it is below, root mean square over the pixels that see a surface
     #[arg(long, value_name = "ERROR", help_heading = HEADING, default_value_t = 0.002, value_parser = error)]
     pub truth_error: f64,
     /// Rays a pixel after which the truth has to do

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use ambray::{
     Renderer,
-    settings::{Method, Settings},
+    settings::{Falloff, Method, Settings},
 };
 use ambray_compare::{
     document::Document,
@@ -56,11 +56,14 @@ enum Measured {
 /// Compares.
 pub fn run(args: &CompareArgs) -> anyhow::Result<()> {
     let settings = settings::resolve(&args.settings)?;
-    if settings.method != Method::Ambray {
-        bail!("--method is not allowed here: --methods chooses what is compared");
-    }
+    check_settings(args, &settings)?;
     let files = Files::new(args)?;
-    check_memory(&settings, 3 * super::FRAME_BYTES)?;
+    let table_size = args.settings.flags.size.unwrap_or(TABLE_SIZE);
+    if args.paper {
+        check_memory(&Settings { size: table_size, ..settings.clone() }, 0)?;
+    }
+    // Frames of pictures, and of sequences openness of every frame and its truth.
+    check_memory(&settings, 3 * super::FRAME_BYTES + u64::from(args.frames.unwrap_or(0)) * 8)?;
     if cfg!(debug_assertions) {
         terminal::warn("this is not a release build: times say little");
     }
@@ -82,7 +85,6 @@ pub fn run(args: &CompareArgs) -> anyhow::Result<()> {
     let work = Work::new(control(&args.run, &share), &tell);
     let truth = truth(args);
     let (mut document, measured) = if args.paper {
-        let table_size = args.settings.flags.size.unwrap_or(TABLE_SIZE);
         let options = PaperOptions { truth, runs: args.runs, table_size };
         let views = Views::of(renderer.scene(), &settings);
         let (document, paper) =
@@ -125,6 +127,26 @@ pub fn run(args: &CompareArgs) -> anyhow::Result<()> {
         return Ok(());
     }
     terminal::print(&format!("{}{}", text(&measured), files.line()))
+}
+
+/// Refuses settings that the comparison chooses itself.
+fn check_settings(args: &CompareArgs, settings: &Settings) -> anyhow::Result<()> {
+    if settings.method != Method::Ambray {
+        bail!("--method is not allowed here: --methods chooses what is compared");
+    }
+    let plain = Settings::default();
+    if settings.sampling != plain.sampling {
+        bail!("--sampling {} is not allowed here: the methods differ by it", settings.sampling);
+    }
+    if settings.temporal != plain.temporal {
+        bail!("--temporal {} is not allowed here: --frames compares with it and without", settings.temporal);
+    }
+    if args.paper
+        && let Some(name) = paper::chosen(settings).first()
+    {
+        bail!("--{name} is not allowed with --paper: the figures choose it");
+    }
+    Ok(())
 }
 
 /// The files that are written.
@@ -219,7 +241,10 @@ fn comparison(args: &CompareArgs, truth: TruthOptions) -> Options {
 fn add_facts(document: &mut Document, label: &str, settings: &Settings, renderer: &Renderer) {
     let machine = Machine::detect();
     let backend = BackendReport::of(renderer).line();
-    let falloff = format!("{}, exponent {}", settings.falloff, settings.exponent);
+    let falloff = match settings.falloff {
+        Falloff::Power => format!("power, exponent {}", settings.exponent),
+        other => other.to_string(),
+    };
     let facts = [
         ("scene", label.to_owned()),
         ("size", settings.size.to_string()),
@@ -255,11 +280,12 @@ fn comparison_text(outcome: &Outcome) -> String {
         "{:20} {:>8} {:>10} {:>9} {:>8} {:>8} {:>9} {:>7} {:>9}",
         "method", "effort", "rays/pixel", "ms", "RMSE", "PSNR", "bias", "FLIP", "sampling"
     );
+    let or_none = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| format!("{value:.4}"));
     for row in &outcome.rows {
         let measures = &row.measures;
         let _ = writeln!(
             text,
-            "{:20} {:>8} {:>10.2} {:>9.1} {:>8.4} {:>8.2} {:>+9.4} {:>7.4} {:>9.4}",
+            "{:20} {:>8} {:>10.2} {:>9.1} {:>8.4} {:>8.2} {:>+9.4} {:>7} {:>9}",
             row.name,
             row.effort.to_string(),
             row.rays_per_pixel,
@@ -267,8 +293,8 @@ fn comparison_text(outcome: &Outcome) -> String {
             measures.rmse,
             measures.psnr.unwrap_or(f64::INFINITY),
             measures.bias,
-            measures.flip.unwrap_or_default(),
-            measures.sampling_part.unwrap_or_default(),
+            or_none(measures.flip),
+            or_none(measures.sampling_part),
         );
     }
     if let Some(moving) = &outcome.sequence {
@@ -283,8 +309,9 @@ fn comparison_text(outcome: &Outcome) -> String {
 }
 
 fn paper_text(paper: &Paper) -> String {
-    let mut text =
-        format!("{:8} {:32} {:>8} {:>8} {:>9} {:>7}\n", "figure", "picture", "RMSE", "PSNR", "bias", "FLIP");
+    let mut text = format!("truth    {}\n\n", compare_report::truth_in_words(&paper.truth));
+    text +=
+        &format!("{:8} {:32} {:>8} {:>8} {:>9} {:>7}\n", "figure", "picture", "RMSE", "PSNR", "bias", "FLIP");
     for picture in &paper.pictures {
         let measures = &picture.measures;
         let _ = writeln!(

@@ -7,7 +7,7 @@ mod work;
 
 use ambray::{
     Aov, Frame, RenderError, Renderer,
-    settings::{Method, Settings},
+    settings::{Method, NearRadiance, Settings},
 };
 use ambray_metrics::Map;
 use serde::Serialize;
@@ -91,11 +91,29 @@ pub fn run(
     mut work: Work<'_>,
 ) -> Result<Outcome, RenderError> {
     let subjects = subjects(settings, options);
+    let efforts: Vec<Vec<Subject>> = subjects
+        .iter()
+        .map(|subject| {
+            subject.efforts(&options.rays).into_iter().map(|effort| subject.with(effort)).collect()
+        })
+        .collect();
+    // Before the work rather than after most of it.
+    for subject in subjects.iter().chain(efforts.iter().flatten()) {
+        let errors = subject.settings.validate();
+        if !errors.is_empty() {
+            return Err(RenderError::Settings(errors));
+        }
+    }
     work.expect(weight(&subjects, options));
-    let truth = work.step("finding the truth", TRUTH_WEIGHT, |control| {
-        Truth::find(renderer, content, settings, &options.truth, control)
-    })?;
-    let mut bench = Bench { renderer, truth: &truth, work: &work };
+    let mut find = |settings: &Settings| {
+        work.step("finding the truth", TRUTH_WEIGHT, |control| {
+            Truth::find(renderer, content, settings, &options.truth, control)
+        })
+    };
+    let truth = find(settings)?;
+    let step = subjects.iter().find(|subject| subject.settings.method == Method::TracedStep);
+    let step = step.map(|subject| find(&subject.settings)).transpose()?;
+    let mut bench = Bench { renderer, truth: &truth, step: step.as_ref().unwrap_or(&truth), work: &work };
 
     let mut seen = Seen::default();
     let mut rows = Vec::new();
@@ -110,12 +128,6 @@ pub fn run(
         rows.push(row);
     }
     bench.time(&subjects, &mut rows, options.runs)?;
-    let efforts: Vec<Vec<Subject>> = subjects
-        .iter()
-        .map(|subject| {
-            subject.efforts(&options.rays).into_iter().map(|effort| subject.with(effort)).collect()
-        })
-        .collect();
     let mut points = Vec::new();
     for subject in efforts.iter().flatten() {
         points.push(bench.measure(subject)?.0);
@@ -142,8 +154,8 @@ pub fn run(
     })
 }
 
-/// The weight of the truth among frames of one ray: a guess, for the progress bar.
-const TRUTH_WEIGHT: f32 = 1024.0;
+/// The weight of a truth among frames of one ray: a guess, for the progress bar.
+pub(crate) const TRUTH_WEIGHT: f32 = 1024.0;
 
 fn weight(subjects: &[Subject], options: &Options) -> f32 {
     let one = |subject: &Subject, runs: u32| (subject.settings.spp as f32 + 4.0) * (2 + runs) as f32;
@@ -152,22 +164,26 @@ fn weight(subjects: &[Subject], options: &Options) -> f32 {
         efforts.map(|effort| one(&subject.with(effort), options.runs.div_ceil(3))).sum::<f32>()
     };
     let still: f32 = subjects.iter().map(|subject| one(subject, options.runs) + series(subject)).sum();
-    let frame = TRUTH_WEIGHT + subjects.iter().map(|subject| one(subject, 0)).sum::<f32>();
+    let step = subjects.iter().any(|subject| subject.settings.method == Method::TracedStep);
+    let truths = if step { 2.0 * TRUTH_WEIGHT } else { TRUTH_WEIGHT };
+    // Ambray comes twice in sequences.
+    let frame: f32 = subjects.iter().chain(&subjects[..1]).map(|subject| one(subject, 0)).sum();
     let frames = options.sequence.as_ref().map_or(0, |sequence| sequence.frames);
-    TRUTH_WEIGHT + still + frame * frames as f32
+    truths + still + (TRUTH_WEIGHT + frame) * frames as f32
 }
 
-/// The methods that are asked for, Ambray first.
+/// The methods that are asked for, each once, Ambray first.
 fn subjects(settings: &Settings, options: &Options) -> Vec<Subject> {
-    let others = options.methods.iter().copied().filter(|&method| method != Method::Ambray);
-    let methods = std::iter::once(Method::Ambray).chain(others);
-    methods.map(|method| Subject::of(method, settings)).collect()
+    let asked = |method: &&Method| **method == Method::Ambray || options.methods.contains(method);
+    Method::ALL.iter().filter(asked).map(|&method| Subject::of(method, settings)).collect()
 }
 
 /// What subjects are measured with.
 struct Bench<'a, 'b> {
     renderer: &'a mut Renderer,
     truth: &'a Truth,
+    /// What a step converges to.
+    step: &'a Truth,
     work: &'a Work<'b>,
 }
 
@@ -181,10 +197,17 @@ impl Bench<'_, '_> {
             self.renderer.forget_frames();
             let frame = self.renderer.render(settings, control)?;
             let settings = settings.by_method();
-            let filtered_truth = maps::filter(&self.truth.openness, &frame, &settings, control)?;
+            let own = if subject.settings.method == Method::TracedStep { self.step } else { self.truth };
+            let filtered_own = maps::filter(&own.openness, &frame, &settings, control)?;
             let filtered = maps::filtered(&frame);
             let who = Who::of(&self.renderer.machine_for(&settings));
-            let row = Row::new(subject, &frame, (&filtered, self.truth, &filtered_truth), who);
+            let row = Row::new(
+                subject,
+                &frame,
+                (&filtered, &self.truth.openness),
+                (&own.openness, &filtered_own),
+                who,
+            );
             Ok((row, frame, filtered))
         })
     }
@@ -196,9 +219,11 @@ impl Bench<'_, '_> {
             for (subject, times) in subjects.iter().zip(&mut times) {
                 let what = format!("timing {}, {}", subject.name, subject.effort());
                 let weight = subject.settings.spp as f32 + 4.0;
+                // What others do not have is not timed.
+                let settings = Settings { near_radiance: NearRadiance::Off, ..subject.settings.clone() };
                 let measured = self.work.step(&what, weight, |control| {
                     self.renderer.forget_frames();
-                    self.renderer.measure(&subject.settings, control)
+                    self.renderer.measure(&settings, control)
                 });
                 let taken = measured?.times;
                 // The first one warms up.

@@ -1,14 +1,13 @@
 //! What was measured of one subject.
 
 use ambray::{Frame, Machine, settings::Method};
-use ambray_metrics::{Map, Measures, rmse};
+use ambray_metrics::{Map, Measures, edges, grain, pattern_left, rmse};
 use serde::Serialize;
 
 use super::Spread;
 use crate::{
     maps,
     subject::{Effort, Subject},
-    truth::Truth,
 };
 
 /// What was measured of one subject with one effort.
@@ -68,11 +67,13 @@ impl std::fmt::Display for Who {
 }
 
 impl Row {
-    /// Errors of `subject`, whose filtered openness stands before the truth and the filtered truth. It is not timed yet.
+    /// Errors of `subject`, whose `filtered` openness stands before `truth`. `own` is what it converges to before and after its
+    /// filter. It is not timed yet.
     pub(super) fn new(
         subject: &Subject,
         frame: &Frame,
-        (filtered, truth, filtered_truth): (&Map, &Truth, &Map),
+        (filtered, truth): (&Map, &Map),
+        own: (&Map, &Map),
         who: Who,
     ) -> Self {
         let rays = frame.stats.rays.ambient + frame.stats.rays.chord;
@@ -84,9 +85,24 @@ impl Row {
             milliseconds: Spread::default(),
             who,
             mean_openness: filtered.mean(),
-            raw_rmse: rmse(&maps::raw(frame), &truth.openness),
-            fitted_rmse: maps::fitted_rmse(filtered, &truth.openness),
-            measures: Measures::of_filtered(filtered, &truth.openness, filtered_truth),
+            raw_rmse: rmse(&maps::shown_raw(frame), truth),
+            fitted_rmse: maps::fitted_rmse(filtered, truth),
+            measures: measures(subject.settings.method, (filtered, truth), own),
         }
+    }
+}
+
+/// Errors of `filtered` against `truth`, and those that tell few rays from the filter, against what the method converges to by
+/// itself. Methods in screen space do not converge to anything that is known: for them the latter would be mostly bias.
+fn measures(method: Method, (filtered, truth): (&Map, &Map), (own, filtered_own): (&Map, &Map)) -> Measures {
+    let measures = Measures { filter_loss: Some(rmse(filtered_own, own)), ..Measures::of(filtered, truth) };
+    if method.is_screen_space() && method != Method::Hybrid {
+        return measures;
+    }
+    Measures {
+        sampling_part: Some(rmse(filtered, filtered_own)),
+        grain: Some(grain(filtered, filtered_own)),
+        pattern_left: Some(pattern_left(filtered, filtered_own, &edges(own))),
+        ..measures
     }
 }

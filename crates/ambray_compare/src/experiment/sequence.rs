@@ -4,14 +4,14 @@ use ambray::{
     RenderError, Renderer,
     settings::{Auto, Method, Settings, Temporal},
 };
-use ambray_metrics::{Ghosting, Map, flicker_of, ghosting, rmse};
+use ambray_metrics::{Ghosting, flicker_of, ghosting, rmse};
 use serde::Serialize;
 
 use super::{Options, Work};
 use crate::{
     maps,
     subject::Subject,
-    truth::{Content, Truth},
+    truth::{AboutTruth, Content, Truth},
 };
 
 /// Change of the truth from one frame to the next from which on it counts as one, for [`ghosting`].
@@ -34,6 +34,8 @@ pub struct Moving {
     pub frames: u32,
     /// Frames a second.
     pub fps: f64,
+    /// How the truth of that frame was found which is the least certain.
+    pub truth: AboutTruth,
     /// Every subject, and Ambray accumulating over the frames.
     pub rows: Vec<SequenceRow>,
 }
@@ -48,7 +50,8 @@ pub struct SequenceRow {
     pub rmse: Vec<f64>,
     /// Root mean square change of the error from frame to frame.
     pub flicker: f64,
-    /// How many frames it lags behind where the truth changes; nothing if it changes nowhere.
+    /// How many frames later it is than the same rays without accumulation, where the truth changes. Nothing for methods that
+    /// keep no frames, whose errors only look late or early; nor if the truth changes nowhere.
     pub lag: Option<f64>,
     /// Root mean square error where the truth changes.
     pub changing_rmse: Option<f64>,
@@ -68,15 +71,17 @@ pub(super) fn run(
         let time = f64::from(settings.time.unwrap_or(0.0)) + f64::from(k) / sequence.fps;
         Settings { time: Auto::Value(time as f32), ..settings.clone() }
     };
-    let mut truths = Vec::new();
+    let (mut truths, mut about) = (Vec::new(), Vec::new());
     for k in 0..sequence.frames {
         let what = format!("the truth of frame {k}");
         let truth = work.step(&what, super::TRUTH_WEIGHT, |control| {
             Truth::find(renderer, content, &at(settings, k), &options.truth, control)
         })?;
         truths.push(truth.openness);
+        about.push(truth.about);
     }
-    let mut rows = Vec::new();
+    let mut rows = Vec::<SequenceRow>::new();
+    let mut ambray_alone = None;
     for subject in subjects.iter().cloned().chain([accumulating(settings)]) {
         renderer.forget_frames();
         let mut maps = Vec::new();
@@ -90,26 +95,26 @@ pub(super) fn run(
             let frame = work.step(&what, weight, |control| renderer.render(&settings, control))?;
             maps.push(maps::filtered(&frame));
         }
-        rows.push(SequenceRow::of(&subject, &maps, &truths));
+        let ghosting = ghosting(&maps, &truths, CHANGED);
+        let lag = ghosting.map(|Ghosting { lag, .. }| lag);
+        if subject.settings.method == Method::Ambray && subject.settings.temporal == Temporal::Off {
+            ambray_alone = lag;
+        }
+        let accumulates = subject.settings.temporal == Temporal::On;
+        rows.push(SequenceRow {
+            name: subject.name.clone(),
+            rmse: maps.iter().zip(&truths).map(|(map, truth)| rmse(map, truth)).collect(),
+            flicker: flicker_of(&maps, &truths).unwrap_or_default(),
+            lag: lag.zip(ambray_alone).filter(|_| accumulates).map(|(lag, alone)| lag - alone),
+            changing_rmse: ghosting.map(|Ghosting { rmse, .. }| rmse),
+        });
     }
-    Ok(Moving { frames: sequence.frames, fps: sequence.fps, rows })
+    let truth = AboutTruth::worst(&about).expect("a sequence has frames");
+    Ok(Moving { frames: sequence.frames, fps: sequence.fps, truth, rows })
 }
 
 /// Ambray with light that accumulates over the frames.
 fn accumulating(settings: &Settings) -> Subject {
     let settings = Settings { method: Method::Ambray, temporal: Temporal::On, ..settings.clone() };
     Subject { name: "Ambray, accumulated".to_owned(), settings }
-}
-
-impl SequenceRow {
-    fn of(subject: &Subject, maps: &[Map], truths: &[Map]) -> Self {
-        let ghosting = ghosting(maps, truths, CHANGED);
-        Self {
-            name: subject.name.clone(),
-            rmse: maps.iter().zip(truths).map(|(map, truth)| rmse(map, truth)).collect(),
-            flicker: flicker_of(maps, truths).unwrap_or_default(),
-            lag: ghosting.map(|Ghosting { lag, .. }| lag),
-            changing_rmse: ghosting.map(|Ghosting { rmse, .. }| rmse),
-        }
-    }
 }

@@ -36,7 +36,12 @@ fn every_method_is_measured_against_the_truth() {
     for row in &outcome.rows {
         assert!(row.measures.rmse > 0.0 && row.measures.rmse < 0.5, "{row:?}");
         assert!(row.fitted_rmse <= row.measures.rmse + 1e-9, "a line can only help: {row:?}");
-        assert!(Measure::ALL.iter().all(|&measure| row.measures.get(measure).is_some()), "{row:?}");
+        let is_part =
+            |measure| matches!(measure, Measure::SamplingPart | Measure::Grain | Measure::PatternLeft);
+        let converges = !row.method.is_screen_space() || row.method == Method::Hybrid;
+        for &measure in Measure::ALL {
+            assert_eq!(row.measures.get(measure).is_some(), converges || !is_part(measure), "{row:?}");
+        }
         assert_eq!(row.milliseconds.count, 2);
         assert!(row.milliseconds.min > 0.0 && row.milliseconds.min <= row.milliseconds.median);
     }
@@ -45,6 +50,8 @@ fn every_method_is_measured_against_the_truth() {
     assert!(sampling(Method::TracedRandom) < sampling(Method::TracedSame) * 1.5);
     // A step counts far hits fully: the picture is darker on the whole.
     assert!(of(Method::TracedStep).measures.bias < -0.05);
+    // Against what it converges to, it errs as other rays do.
+    assert!(sampling(Method::TracedStep) < sampling(Method::TracedRandom));
     let rays = |method| of(method).rays_per_pixel;
     assert!((7.0..=8.0).contains(&rays(Method::Ambray)), "{}", rays(Method::Ambray));
     assert!(rays(Method::Hybrid) > 0.0 && rays(Method::Hybrid) < rays(Method::Ambray));
@@ -66,7 +73,7 @@ fn a_sequence_tells_flicker_and_ghosting() {
         ..Settings::default()
     };
     let sequence = Some(SequenceOptions { frames: 8, fps: 12.0 });
-    let options = Options { sequence, rays: vec![2], runs: 1, ..options(&[Method::TracedRandom]) };
+    let options = Options { sequence, rays: vec![2, 2], runs: 1, ..options(&[Method::TracedRandom]) };
     let outcome = measured(moving::banner(), &settings, &options);
     let moving = outcome.sequence.expect("asked for");
     let names: Vec<_> = moving.rows.iter().map(|row| row.name.as_str()).collect();
@@ -75,7 +82,7 @@ fn a_sequence_tells_flicker_and_ghosting() {
     assert!(moving.rows.iter().all(|row| row.rmse.len() == 8 && row.flicker > 0.0));
     assert!(plain.rmse[7] < random.rmse[7], "{moving:?}");
     assert!(accumulated.rmse[7] < 0.9 * plain.rmse[7], "{moving:?}");
-    let lag = |row: &SequenceRow| row.lag.expect("it moves");
-    assert!(lag(plain).abs() < 0.1, "a frame by itself is not late: {moving:?}");
-    assert!(lag(accumulated) > lag(plain), "what is kept is: {moving:?}");
+    assert_eq!([plain.lag, random.lag], [None; 2], "what keeps no frames is not late");
+    assert!((0.0..1.0).contains(&accumulated.lag.expect("it moves")), "what is kept is: {moving:?}");
+    assert!(moving.truth.is_reached());
 }

@@ -15,7 +15,7 @@ use crate::{
     pictures, report,
 };
 
-/// Share of the pattern that may be left for it to count as removed (spec §11).
+/// Power of the pattern over that around it below which it counts as removed (spec §11).
 const PATTERN_BAR: f64 = 40.0;
 
 pub(super) fn figure(studio: &mut Studio<'_, '_>, view: &Settings) -> Result<Figure, RenderError> {
@@ -60,7 +60,7 @@ pub(super) fn figure(studio: &mut Studio<'_, '_>, view: &Settings) -> Result<Fig
                     "Power at the frequencies of the pattern over that around them: {before:.0} before the filter, {after:.0} after \
                      it; rejected neighbours at edges keep a little. RMSE {raw:.4} before, {filtered:.4} after."
                 ),
-                holds: after < PATTERN_BAR,
+                holds: before > PATTERN_BAR && after < PATTERN_BAR,
             },
             Block::Table(report::measures_table("Errors of openness.".to_owned(), &named(&all))),
         ],

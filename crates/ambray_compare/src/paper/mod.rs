@@ -8,6 +8,8 @@ mod table;
 mod thin;
 mod views;
 
+use std::sync::Arc;
+
 use ambray::{
     RenderError, Renderer,
     settings::{Settings, Size},
@@ -19,8 +21,9 @@ pub use views::Views;
 
 use crate::{
     document::{Document, Section},
-    experiment::{Spread, Work},
-    truth::{Content, TruthOptions},
+    experiment::{Spread, TRUTH_WEIGHT, Work},
+    report,
+    truth::{AboutTruth, Content, Truth, TruthOptions},
 };
 
 /// What the figures are made with.
@@ -41,6 +44,8 @@ pub const TABLE_SIZE: Size = Size { width: 1920, height: 1080 };
 #[derive(Clone, Debug, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub struct Paper {
+    /// How the truth of that view was found which is the least certain.
+    pub truth: AboutTruth,
     /// Errors of every picture of the figures that shows openness.
     pub pictures: Vec<Measured>,
     /// Times of the passes.
@@ -91,6 +96,8 @@ struct Studio<'a, 'b> {
     content: &'a Content,
     options: &'a PaperOptions,
     work: &'a Work<'b>,
+    /// Truths of the views so far.
+    truths: Vec<(Settings, Arc<Truth>)>,
 }
 
 /// Makes the figures and the table in the `views` that show what they are about.
@@ -104,8 +111,8 @@ pub fn run(
     options: &PaperOptions,
     mut work: Work<'_>,
 ) -> Result<(Document, Paper), RenderError> {
-    work.expect(4.0 * shot::TRUTH_WEIGHT + table::WEIGHT * options.runs as f32);
-    let mut studio = Studio { renderer, content, options, work: &work };
+    work.expect(2.0 * TRUTH_WEIGHT + table::WEIGHT * options.runs as f32);
+    let mut studio = Studio { renderer, content, options, work: &work, truths: Vec::new() };
     let figures = [
         bleeding::figure(&mut studio, &views.bleeding)?,
         interleaving::figure(&mut studio, &views.overview)?,
@@ -113,6 +120,8 @@ pub fn run(
         rays::figure(&mut studio, &views.overview)?,
     ];
     let (table, times) = table::table(&mut studio, &views.overview)?;
+    let about: Vec<_> = studio.truths.iter().map(|(_, truth)| truth.about).collect();
+    let truth = AboutTruth::worst(&about).expect("every figure has a truth");
     let mut sections = Vec::new();
     let mut pictures = Vec::new();
     for (section, measured) in figures {
@@ -125,10 +134,21 @@ pub fn run(
         summary: "The figures of Fridvalszky and Tóth, Real-time ambient lighting with raytracing, rendered anew and measured \
                   against converged references; where a claim of the paper does not hold here, it says so."
             .to_owned(),
-        facts: vec![("views".to_owned(), views.origin.clone())],
+        facts: vec![
+            ("views".to_owned(), views.origin.clone()),
+            ("truth of the worst view".to_owned(), report::truth_in_words(&truth)),
+        ],
         sections,
     };
-    Ok((document, Paper { pictures, times }))
+    Ok((document, Paper { truth, pictures, times }))
+}
+
+/// The settings that the figures choose themselves, among those that differ from their default.
+#[must_use]
+pub fn chosen(settings: &Settings) -> Vec<&'static str> {
+    let plain = plain(settings);
+    let names = Settings::fields().iter().map(|field| field.name);
+    names.filter(|name| settings.get(name) != plain.get(name)).collect()
 }
 
 /// Settings of a figure without what other figures are about.
@@ -136,6 +156,11 @@ fn plain(settings: &Settings) -> Settings {
     let defaults = Settings::default();
     Settings {
         method: defaults.method,
+        screen_quality: defaults.screen_quality,
+        thickness: defaults.thickness,
+        thin_edge: defaults.thin_edge,
+        thin_minimum: defaults.thin_minimum,
+        sequence: defaults.sequence,
         thin: defaults.thin,
         temporal: defaults.temporal,
         sampling: defaults.sampling,

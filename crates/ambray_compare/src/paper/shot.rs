@@ -6,10 +6,7 @@ use ambray::{Frame, RenderError, settings::Settings};
 use ambray_metrics::{Map, Measures};
 
 use super::{Measured, Studio};
-use crate::{document::Picture, maps, pictures, truth::Truth};
-
-/// The weight of a truth among frames of one ray: a guess, for the progress bar.
-pub(super) const TRUTH_WEIGHT: f32 = 1024.0;
+use crate::{document::Picture, experiment::TRUTH_WEIGHT, maps, pictures, truth::Truth};
 
 /// A rendered frame beside its truth.
 pub(super) struct Shot {
@@ -21,11 +18,17 @@ pub(super) struct Shot {
 }
 
 impl Studio<'_, '_> {
-    /// The truth of a view.
+    /// The truth of a view. Figures of the same view share it.
     pub(super) fn truth(&mut self, settings: &Settings) -> Result<Arc<Truth>, RenderError> {
-        self.work.step("finding the truth", TRUTH_WEIGHT, |control| {
-            Truth::find(self.renderer, self.content, settings, &self.options.truth, control).map(Arc::new)
-        })
+        if let Some((_, truth)) = self.truths.iter().find(|(known, _)| known == settings) {
+            return Ok(Arc::clone(truth));
+        }
+        let truth = self.work.step("finding the truth", TRUTH_WEIGHT, |control| {
+            Truth::find(self.renderer, self.content, settings, &self.options.truth, control)
+        })?;
+        let truth = Arc::new(truth);
+        self.truths.push((settings.clone(), Arc::clone(&truth)));
+        Ok(truth)
     }
 
     /// A frame with `settings`, beside `truth`.

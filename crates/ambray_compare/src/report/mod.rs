@@ -93,8 +93,9 @@ fn light(outcome: &Outcome) -> Section {
 }
 
 fn rays(outcome: &Outcome) -> Section {
-    let text = "Each point is a picture. The sampling part is the error that is due to few rays: against the truth after the same \
-                filter. What is left of the whole error with many rays is what the filter blurs.";
+    let text = "Each point is a picture. The sampling part is the error that is due to few rays: against what the method converges \
+                to, after the same filter; of the hybrid it holds what the depth buffer gets wrong as well. What is left of the \
+                whole error with many rays is what the filter blurs.";
     let blocks = vec![
         Block::Text(text.to_owned()),
         Block::Plot(plots::error_against_rays(outcome)),
@@ -105,7 +106,7 @@ fn rays(outcome: &Outcome) -> Section {
 
 fn times(outcome: &Outcome) -> Section {
     let text = "Time of the method and its filter, the middle of the runs, without the primary rays and the direct light that all \
-                share. Times of methods in screen space are those of this program on the processor: they tell nothing of what \
+                share, and without the colour bleeding that methods in screen space do not have. Times of methods in screen space are those of this program on the processor: they tell nothing of what \
                 they take on a graphics card, where they are made for.";
     let blocks = vec![
         Block::Text(text.to_owned()),
@@ -117,9 +118,12 @@ fn times(outcome: &Outcome) -> Section {
 
 fn moving(moving: &crate::experiment::Moving) -> Section {
     let text = format!(
-        "{} frames at {} frames a second, each against its own truth. Flicker is how much the error changes from frame to frame; \
-         lag is how many frames late a method is where the truth changes (0 follows at once).",
-        moving.frames, moving.fps
+        "{} frames at {} frames a second, each against its own truth ({}). Flicker is how much the error changes from frame to \
+         frame: every frame has the same samples, so that their noise stands still, but for accumulated light, whose samples \
+         go on. Lag is how many frames later accumulated light follows the truth than the same rays by themselves.",
+        moving.frames,
+        moving.fps,
+        truth_in_words(&moving.truth)
     );
     let blocks = vec![
         Block::Text(text),

@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Write};
 
-use ambray::{scene::Scene, settings::Settings};
+use ambray::{Machine, scene::Scene, settings::Settings};
 use bytemuck::cast_slice;
 use sha2::{Digest, Sha256};
 
@@ -40,11 +40,18 @@ impl Content {
         Self(hash.finish())
     }
 
-    /// Name of the truth of a scene with this content for `settings`, up to a standard error of `bound` or `most` rays.
-    pub(super) fn key(&self, settings: &Settings, bound: f64, most: u32) -> String {
+    /// Name of the truth of a scene with this content for `settings`, up to a standard error of `bound` or `most` rays, as
+    /// `machine` computes it.
+    pub(super) fn key(&self, settings: &Settings, bound: f64, most: u32, machine: &Machine) -> String {
         let mut hash = Hash(Sha256::new());
         hash.words(&(VERSION, BATCH, env!("CARGO_PKG_VERSION"), &self.0, bound.to_bits(), most));
         hash.words(&relevant(settings));
+        // All instruction sets of the processor give the same bits.
+        let device = match machine {
+            Machine::Cpu { .. } => None,
+            Machine::Vulkan { device, .. } => Some(device),
+        };
+        hash.words(&device);
         hash.finish()
     }
 }
@@ -67,7 +74,6 @@ fn relevant(settings: &Settings) -> Settings {
         thin_minimum: plain.thin_minimum,
         sampling: plain.sampling,
         sequence: plain.sequence,
-        frame: plain.frame,
         filter: plain.filter,
         filter_test: plain.filter_test,
         filter_plane: plain.filter_plane,
@@ -133,7 +139,8 @@ mod tests {
     #[test]
     fn the_truth_does_not_depend_on_who_looks_for_it() {
         let content = Content("a".to_owned());
-        let key = |settings: &Settings| content.key(settings, 1e-3, 1024);
+        let cpu = Machine::Cpu { isa: "any", reason: None };
+        let key = |settings: &Settings| content.key(settings, 1e-3, 1024, &cpu);
         let plain = key(&Settings::default());
         let others = Settings {
             method: Method::Gtao,
@@ -145,6 +152,6 @@ mod tests {
         };
         assert_eq!(key(&others), plain);
         assert_ne!(key(&Settings { exponent: 2.0, ..Settings::default() }), plain);
-        assert_ne!(content.key(&Settings::default(), 2e-3, 1024), plain);
+        assert_ne!(content.key(&Settings::default(), 2e-3, 1024, &cpu), plain);
     }
 }

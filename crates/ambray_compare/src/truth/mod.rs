@@ -7,7 +7,7 @@ use std::{path::PathBuf, time::Instant};
 
 use ambray::{
     Control, Frame, RenderError, Renderer,
-    settings::{Method, Sampling, Settings, Temporal, Thin, Window},
+    settings::{Method, Sampling, Sequence, Settings, Temporal, Thin, Window},
 };
 use ambray_metrics::Map;
 use glam::{DVec4, Vec3, Vec4, Vec4Swizzles};
@@ -19,7 +19,8 @@ pub use content::Content;
 const BATCH: u32 = 512;
 /// Batches that there are at least: 1024 rays a pixel, as spec §10 asks.
 const LEAST: u32 = 2;
-/// Of the way truths are found: another number makes kept ones worthless.
+/// Of the way truths are found: another number makes kept ones worthless. To be raised with every change of what converged
+/// light is: of tracing, offsets, surfaces, textures.
 const VERSION: u32 = 1;
 
 /// How good a truth must be, and where truths are kept.
@@ -67,6 +68,12 @@ pub struct AboutTruth {
 }
 
 impl AboutTruth {
+    /// Of several truths the one whose standard error is largest.
+    #[must_use]
+    pub fn worst(of: &[Self]) -> Option<Self> {
+        of.iter().copied().max_by(|a, b| a.standard_error.total_cmp(&b.standard_error))
+    }
+
     /// Whether the standard error is below the bound.
     #[must_use]
     pub fn is_reached(&self) -> bool {
@@ -89,7 +96,7 @@ impl Truth {
         let start = Instant::now();
         // A step is the falloff of one of the methods, so its truth is asked for by that method.
         let settings = settings.by_method();
-        let key = content.key(&settings, options.bound, options.most);
+        let key = content.key(&settings, options.bound, options.most, &renderer.machine());
         let size = (settings.size.width, settings.size.height);
         let kept = options.cache.as_deref().and_then(|folder| cache::read(folder, &key, size));
         if let Some(mut truth) = kept {
@@ -176,8 +183,9 @@ fn batch(settings: &Settings, number: u32) -> Settings {
         filter: Window::Off,
         thin: Thin::Off,
         temporal: Temporal::Off,
-        frame: 0,
-        // Away from the seeds that people choose.
+        sequence: Sequence::Auto,
+        // The primary rays of all batches and of what is compared are the same: the seed does not count for them. Away from the
+        // seeds that people choose.
         seed: settings.seed.wrapping_add(0x7121_0000).wrapping_add(number),
         ..settings.clone()
     }

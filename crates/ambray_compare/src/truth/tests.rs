@@ -1,5 +1,5 @@
 use ambray::{
-    scene::atrium::atrium,
+    scene::{AlphaMode, atrium::atrium},
     settings::{Falloff, Size},
 };
 
@@ -62,4 +62,24 @@ fn what_was_found_once_is_read_the_next_time() {
         std::fs::write(file.expect("a file").path(), b"not a picture").expect("written");
     }
     assert_eq!(find(&small()).openness, first.openness);
+}
+
+#[test]
+fn the_truth_of_blended_surfaces_is_of_those_that_frames_see() {
+    // Every other block of pixels sees a pane, the others the floor under it.
+    let mut scene = atrium();
+    for material in &mut scene.materials {
+        material.alpha_mode = AlphaMode::Blend;
+        material.base_color.w *= 0.5;
+    }
+    let mut renderer = Renderer::new(scene);
+    let content = Content::of(renderer.scene());
+    let options = TruthOptions::default();
+    let settings = Settings { filter: Window::Off, sampling: Sampling::Random, ..small() };
+    let truth =
+        Truth::find(&mut renderer, &content, &settings, &options, Control::default()).expect("renders");
+    let frame = renderer.render(&Settings { spp: 2048, ..settings }, Control::default()).expect("renders");
+    let error = ambray_metrics::rmse(&crate::maps::raw(&frame), &truth.openness);
+    assert!(truth.about.is_reached(), "{:?}", truth.about);
+    assert!(error < 3.0 * truth.about.standard_error, "{error} with {:?}", truth.about);
 }

@@ -161,11 +161,11 @@ impl Job<'_> {
         let (columns, rows) = (TILE.min(width - x0), band.gbuffer.len() / width);
         let pixels =
             (0..rows).flat_map(|row| (x0..x0 + columns).map(move |x| (row * width + x, x, y0 + row)));
-        let (frame, seed) = (self.settings.frame, self.settings.seed);
+        let frame = self.settings.frame;
         scratch.rays.clear();
         scratch.rays.extend(pixels.clone().map(|(_, x, y)| {
             let (x, y) = (x as u32, y as u32);
-            self.view.camera.primary_ray(x, y, PixelKey::primary_seed(x, y, frame, seed))
+            self.view.camera.primary_ray(x, y, PixelKey::primary_seed(x, y, frame))
         }));
         scratch.hits.clear();
         scratch.hits.resize(scratch.rays.len(), Hit::MISS);

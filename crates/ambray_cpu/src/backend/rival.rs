@@ -50,7 +50,8 @@ pub(super) fn run(
     let raw = rival.estimate(&screen, &control)?;
     let estimated = Instant::now();
     if settings.filter == Window::Off {
-        pass1.ambient = plane(&raw);
+        // GTAO leaves values above 1 to its denoiser.
+        pass1.ambient = plane(&raw.iter().map(|openness| openness.min(1.0)).collect::<Vec<_>>());
     } else {
         pass1.ambient = plane(&rival.filter(&screen, &raw, &control)?);
     }

@@ -64,7 +64,7 @@ void write_surface(uint index, Ray ray, Hit hit) {
 }
 
 void run(uvec2 pixel, uint index) {
-    Ray ray = primary_ray(pixel, primary_seed(pixel, VIEW.frame, VIEW.seed));
+    Ray ray = primary_ray(pixel, primary_seed(pixel, VIEW.frame));
     Hit hit = trace_closest(RAY_PRIMARY, ray);
     if (hit.instance == NONE) {
         write_nothing(index);

@@ -63,8 +63,8 @@ uint pixel_hash(uvec2 pixel, uint frame, uint seed) {
 }
 
 // Seed of primary rays: the 16 pixels of a block share the hash and differ in the stratum.
-uint primary_seed(uvec2 pixel, uint frame, uint seed) {
-    return (pixel_hash(pixel >> 2, frame, seed) << 4) | sample_class(pixel);
+uint primary_seed(uvec2 pixel, uint frame) {
+    return (pixel_hash(pixel >> 2, frame, 0u) << 4) | sample_class(pixel);
 }
 
 uint ray_seed(uint hash, uint ray) {

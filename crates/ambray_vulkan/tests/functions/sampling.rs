@@ -65,12 +65,8 @@ fn pixels() {
         arguments.iter().zip(functions.call(FUNCTION_PIXELS, &view(), &calls))
     {
         let key = PixelKey::new(x, y, frame, seed);
-        let expected = [
-            sample_class(x, y).into(),
-            key.hash,
-            PixelKey::primary_seed(x, y, frame, seed),
-            key.ray_seed(ray),
-        ];
+        let expected =
+            [sample_class(x, y).into(), key.hash, PixelKey::primary_seed(x, y, frame), key.ray_seed(ray)];
         assert_eq!([0, 1, 2, 3].map(|i| values.word(i)), expected, "{x}, {y}, {frame}, {seed}, {ray}");
     }
 }
