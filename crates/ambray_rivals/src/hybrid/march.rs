@@ -8,7 +8,7 @@ use ambray_core::{
 };
 use glam::{Vec2, Vec3};
 
-use crate::Screen;
+use super::facets::{Facet, Facets};
 
 /// Halvings of the step in which a ray went behind something: to 1/64 of it.
 const REFINEMENTS: u32 = 6;
@@ -19,6 +19,12 @@ const NEAR: f32 = 1e-3;
 
 /// Reach of a ray without end, in widths or heights of the picture where it starts.
 const FAR: f32 = 1e3;
+
+/// Distance from a plane to which something counts as on it, pixels.
+const FLAT: f32 = 0.05;
+
+/// Distance from the point that a pixel shows to which its plane is taken for what is there, pixels.
+const EXTENT: f32 = 0.5;
 
 /// What the depth buffer knows about a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,22 +37,11 @@ pub(super) enum Verdict {
     Unknown,
 }
 
-/// The piece of a plane that a pixel shows.
-#[derive(Clone, Copy, Debug)]
-struct Facet {
-    position: Vec3,
-    /// Unit geometric normal towards the viewer; 0 where nothing is seen, which nothing is behind.
-    normal: Vec3,
-}
-
 /// The surfaces that the camera sees.
 #[derive(Clone, Debug)]
 pub(super) struct DepthBuffer<'a> {
     camera: &'a Camera,
-    /// Apart from the G-buffer, whose pixels are many times as large.
-    facets: Vec<Facet>,
-    /// Column and row of the last pixel.
-    last: (i32, i32),
+    facets: Facets,
     /// Steps of a ray, at most.
     steps: u32,
     /// How far behind the edge of what is seen a ray still hits it, scene units of depth.
@@ -105,18 +100,15 @@ struct Behind {
 impl<'a> DepthBuffer<'a> {
     /// What `camera` sees.
     pub(super) fn new(camera: &'a Camera, gbuffer: &[GBufferPixel], steps: u32, thickness: f32) -> Self {
-        let facet = |pixel: &GBufferPixel| {
-            let normal = if pixel.is_surface() { pixel.geometric_normal } else { Vec3::ZERO };
-            Facet { position: pixel.position, normal }
-        };
-        let (width, height) = camera.size();
-        let last = (width as i32 - 1, height as i32 - 1);
-        Self { camera, facets: gbuffer.iter().map(facet).collect(), last, steps, thickness }
+        Self { camera, facets: Facets::new(camera, gbuffer), steps, thickness }
     }
 
     /// Follows `ray`, which starts on something seen.
     pub(super) fn march(&self, ray: &Ray) -> Verdict {
         let Some(segment) = self.segment(ray) else { return Verdict::Unknown };
+        if !self.facets.is_clear(segment.from) {
+            return Verdict::Unknown;
+        }
         let mut front = 0.0;
         for s in segment.places(self.steps) {
             if let Some(behind) = self.behind(&segment, s) {
@@ -149,15 +141,23 @@ impl<'a> DepthBuffer<'a> {
     /// What the ray is behind at `s`; `None` if it is in front of what is seen there.
     ///
     /// A pixel shows a piece of a plane, through its own point with its geometric normal. So rays over a plane never go behind
-    /// it, however coarse the pixels are.
+    /// it, however coarse the pixels are. Where one piece ends and the next begins is not known to less than a pixel, so the
+    /// four pixels around the ray are asked: it is in front of an edge if it is in front of either side of it, and in front of
+    /// anything else if it is in front of all four.
     fn behind(&self, segment: &Segment, s: f32) -> Option<Behind> {
-        // Rounding may put the end just outside the picture.
-        let (x, y) = Screen::nearest(segment.pixel(s));
-        let (x, y) = (x.clamp(0, self.last.0), y.clamp(0, self.last.1));
-        let seen = self.facets[y as usize * (self.last.0 as usize + 1) + x as usize];
+        let around = self.facets.around(segment.pixel(s));
         let at = segment.ray.origin + segment.ray.direction * segment.distance(s);
-        let height = seen.normal.dot(at - seen.position);
-        (height < 0.0).then_some(Behind { s, seen, height })
+        let heights = around.map(|facet| facet.height(at));
+        if heights.iter().all(|height| *height >= 0.0) {
+            return None;
+        }
+        let tolerance = FLAT * self.camera.footprint(self.camera.depth(at));
+        let sides = || around.iter().zip(heights);
+        let over_edge = |seen: &Facet| {
+            sides().any(|(other, height)| height >= 0.0 && seen.makes_edge_with(other, tolerance))
+        };
+        let (seen, height) = sides().find(|(seen, height)| *height < 0.0 && !over_edge(seen))?;
+        Some(Behind { s, seen: *seen, height })
     }
 
     /// What happened between `front`, where the ray was in front of what is seen, and `behind`.
@@ -173,11 +173,23 @@ impl<'a> DepthBuffer<'a> {
         // Through the plane of what is seen: the hit is there, unless that is long before, where something else was seen.
         let steepness = -behind.seen.normal.dot(segment.ray.direction);
         let through = after + behind.height / steepness;
-        if steepness > 0.0 && through >= before - (after - before) {
-            return Verdict::Hit(through.max(0.0));
+        let earliest = (before - (after - before)).max(0.0);
+        if steepness > 0.0 && through >= earliest && self.is_seen(&segment.ray, &behind.seen, through) {
+            return Verdict::Hit(through);
         }
         // Past an edge of what is seen: into its side if it is thick enough.
         if self.is_within(&segment.ray, &behind, after) { Verdict::Hit(after) } else { Verdict::Unknown }
+    }
+
+    /// Whether the plane of `seen` is what the camera sees where `ray` goes through it at `distance`: near the point that its
+    /// pixel shows, or where the pixels around agree. A plane seen at a glancing angle reaches far within its pixel, but what
+    /// it belongs to may end anywhere there, as in the folds of a curtain.
+    fn is_seen(&self, ray: &Ray, seen: &Facet, distance: f32) -> bool {
+        let at = ray.origin + ray.direction * distance;
+        let Some((place, depth)) = self.camera.project(at) else { return false };
+        let pixel = self.camera.footprint(depth);
+        seen.position.distance(at) <= EXTENT * pixel
+            || self.facets.around(place).iter().all(|facet| facet.height(at).abs() <= FLAT * pixel)
     }
 
     /// Whether `ray` is inside what is seen at `distance`, its thickness being as given: deeper than its front by more than

@@ -4,7 +4,9 @@
 //! text of theirs gives the details, so what follows is our reading. The estimator is Ambray's own – the same points,
 //! directions and measure μ – and each ray is first followed through the picture:
 //!
-//! - It goes through the plane that a pixel shows: a hit at that distance.
+//! - It starts where surfaces meet or one hides another within a pixel: not known.
+//! - It goes through the plane that a pixel shows, near the point that is seen or where the pixels around show the same
+//!   plane: a hit at that distance. Elsewhere the plane may have ended: not known.
 //! - It passes behind the edge of something: a hit there if it is no more than the thickness behind, and by more than the
 //!   depth changes within a pixel; else not known.
 //! - It stays in front of everything seen, to its end: a miss, since that space is empty.
@@ -14,6 +16,7 @@
 //! start of the ray. So the depth buffer saves rays, and errs only where the steps of a
 //! ray pass over something, where a pixel shows more than a plane, or where the thickness is wrong.
 
+mod facets;
 mod march;
 
 use ambray_core::{
