@@ -2,7 +2,13 @@
 
 mod desk;
 
-use ambray::settings::{Auto, Kind, Settings, Thin, Window};
+use std::sync::Arc;
+
+use ambray::{
+    Machine,
+    settings::{Auto, Kind, Method, Settings, Temporal, Thin, Window},
+    vulkan::TraceMode,
+};
 use ambray_view::{
     app::Severity,
     model::{Comparison, SceneRef, Side},
@@ -160,6 +166,112 @@ fn the_command_line_names_what_differs_and_the_plane() {
         }
     }
     assert_eq!(&settings, desk.settings());
+}
+
+/// Lets the scene be open on a device, and the picture of side A be rendered by `machine`.
+fn pretend_a_device(desk: &mut Desk, machine: Machine) {
+    let device = Machine::Vulkan { device: "A card".to_owned(), trace: TraceMode::Query };
+    let shown = &mut desk.app_mut().shown;
+    Arc::make_mut(shown.opened.as_mut().unwrap()).machine = device;
+    shown.sides[0].as_mut().unwrap().machine = machine;
+}
+
+#[test]
+fn the_command_line_names_no_device_that_would_refuse_the_method() {
+    let mut desk = Desk::new();
+    desk.wait();
+    let device = Machine::Vulkan { device: "A card".to_owned(), trace: TraceMode::Query };
+    pretend_a_device(&mut desk, device);
+    assert!(desk.app().command_line(Side::A).contains("--backend=vulkan"));
+    desk.app_mut().set("method", "ssao").unwrap();
+    desk.step(1);
+    let line = desk.app().command_line(Side::A);
+    assert!(line.contains("--method=ssao") && !line.contains("--backend=vulkan"), "{line}");
+    desk.wait();
+    // A device that gave up has no part in the picture either.
+    let reason = Some("the device is lost".to_owned());
+    pretend_a_device(&mut desk, Machine::Cpu { isa: "scalar", reason });
+    assert!(!desk.app().command_line(Side::A).contains("--backend"));
+}
+
+#[test]
+fn the_machine_of_a_picture_is_who_rendered_it() {
+    let mut desk = Desk::new();
+    desk.wait();
+    let device = Machine::Vulkan { device: "A card".to_owned(), trace: TraceMode::Query };
+    let reason = Some("the method ssao runs there only".to_owned());
+    let processor = Machine::Cpu { isa: "scalar", reason };
+    pretend_a_device(&mut desk, device.clone());
+    desk.step(2);
+    desk.harness.get_by_label("A card");
+    pretend_a_device(&mut desk, processor.clone());
+    desk.step(2);
+    desk.harness.get_by_label("processor, scalar");
+    desk.harness.get_by_label("On the processor: the method ssao runs there only");
+    assert!(desk.harness.query_by_label("A card").is_none());
+    // Two pictures, two machines.
+    desk.click("A | B");
+    desk.wait();
+    pretend_a_device(&mut desk, processor);
+    desk.app_mut().shown.sides[1].as_mut().unwrap().machine = device;
+    desk.step(2);
+    for label in ["machine A", "processor, scalar", "machine B", "A card"] {
+        desk.harness.get_by_label(label);
+    }
+}
+
+#[test]
+fn what_a_method_cannot_do_is_not_offered() {
+    let mut desk = Desk::new();
+    desk.wait();
+    desk.open_all_groups();
+    assert!(!desk.harness.get_by_label("accumulate").accesskit_node().is_disabled());
+    desk.app_mut().set("method", "gtao").unwrap();
+    desk.step(3);
+    assert!(desk.harness.get_by_label("accumulate").accesskit_node().is_disabled());
+    desk.harness.get_by_label("accumulate").hover();
+    desk.pass(2);
+    desk.harness.get_by_label("temporal on is not allowed: off where the method works in screen space");
+    desk.click("thin");
+    let sheet = desk.harness.get_by_role_and_label(Role::Button, "sheet");
+    assert!(sheet.accesskit_node().is_disabled());
+    sheet.click();
+    desk.step(3);
+    assert_eq!(desk.settings().thin, Thin::Off);
+    desk.harness.key_press(Key::Escape);
+    desk.step(3);
+    desk.click("Compare");
+    assert!(desk.harness.get_by_label("thin off | sheet").accesskit_node().is_disabled());
+    desk.click("this | converged reference");
+    let [a, b] = &desk.app().model.settings;
+    assert_eq!((a.method, b.method, b.spp), (Method::Gtao, Method::Ambray, 1024));
+}
+
+#[test]
+fn a_method_says_what_it_does_not_go_with_and_how_to_go_on() {
+    let mut desk = Desk::new();
+    desk.wait();
+    desk.app_mut().set("thin", "sheet").unwrap();
+    desk.app_mut().set("temporal", "on").unwrap();
+    desk.app_mut().set("method", "hbao").unwrap();
+    desk.step(3);
+    // Also where all groups are closed.
+    desk.app_mut().memory.panels.open_groups.clear();
+    desk.harness.run_steps(20);
+    desk.harness.get_by_label("The picture stays as it was: thin and temporal are not allowed");
+    desk.harness.get_by_label("not allowed");
+    assert!(
+        !desk.harness.get_by_label("accumulate").accesskit_node().is_disabled(),
+        "it can be switched off"
+    );
+    desk.open_all_groups();
+    desk.harness.get_by_label("hbao does not go with thin and temporal");
+    desk.click("Reset thin and temporal");
+    let settings = desk.settings();
+    assert_eq!((settings.method, settings.thin, settings.temporal), (Method::Hbao, Thin::Off, Temporal::Off));
+    desk.wait();
+    assert_eq!(desk.app().shown.sides[0].as_ref().unwrap().settings.method, Method::Hbao);
+    assert!(desk.harness.query_by_label_contains("not allowed").is_none());
 }
 
 #[test]

@@ -112,7 +112,7 @@ impl App {
     #[must_use]
     pub fn command_line(&self, side: Side) -> String {
         // What cannot be rendered is not seen: the line is that of the picture.
-        command::line(&self.model, &self.shown, &self.valid[side as usize], self.frames(side))
+        command::line(&self.model, &self.shown, side, &self.valid[side as usize], self.frames(side))
     }
 
     const fn toggle_panels(&mut self) {

@@ -49,8 +49,10 @@ pub(super) fn level(rendered: &Rendered) -> Option<String> {
     if level.is_final {
         return (rendered.frames > 1).then(|| format!("{} frames", rendered.frames));
     }
-    let scale = if level.scale < 1.0 { format!("1/{:.0}, ", 1.0 / level.scale) } else { String::new() };
-    Some(format!("refining {scale}{} spp", level.spp))
+    let scale = (level.scale < 1.0).then(|| format!("1/{:.0}", 1.0 / level.scale));
+    let spp = (level.spp > 0).then(|| format!("{} spp", level.spp));
+    let parts: Vec<String> = scale.into_iter().chain(spp).collect();
+    Some(format!("refining {}", parts.join(", ")))
 }
 
 /// The numbers of a difference.

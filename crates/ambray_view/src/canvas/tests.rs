@@ -8,7 +8,10 @@ use ambray::{
     settings::{Settings, Size},
 };
 use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2, TouchPhase, Vec2, pos2, vec2};
-use egui_kittest::{Harness, kittest::Queryable as _};
+use egui_kittest::{
+    Harness,
+    kittest::{NodeT as _, Queryable as _},
+};
 
 use super::*;
 use crate::{
@@ -92,6 +95,7 @@ fn rendered(side: Side, settings: &Settings, frame: &ambray::Frame) -> Rendered 
         settings: settings.clone(),
         aov: Aov::Beauty,
         view: frame.view.clone(),
+        machine: ambray::Machine::Cpu { isa: ambray::Isa::detect().name(), reason: None },
         level: Level { scale: 1.0, spp: 1, is_final: true },
         frames: 1,
         content: Content::Host { frame: Arc::new(frame.clone()), pixels },
@@ -412,6 +416,32 @@ fn a_pinned_pixel_stays_and_tells_what_it_did() {
     harness.key_press(Key::Escape);
     harness.run_steps(2);
     assert!(harness.query_by_label_contains("Filter taps: ").is_none());
+}
+
+#[test]
+fn the_inspector_says_where_a_pixel_has_no_rays_and_asks_for_none() {
+    use ambray::settings::Method;
+    let mut harness = harness();
+    let state = harness.state_mut();
+    let settings = Settings { method: Method::Gtao, ..state.model.of(Side::A).clone() };
+    let frame = state.renderer.render(&settings, Control::default()).expect("renders");
+    *state.model.of_mut(Side::A) = settings.clone();
+    state.shown.sides[0] = Some(rendered(Side::A, &settings, &frame));
+    let place = pos2(310.0, 30.0);
+    hold(&mut harness, Modifiers::ALT);
+    harness.event(Event::PointerMoved(place));
+    harness.step();
+    for pressed in [true, false] {
+        button(&harness, place, PointerButton::Primary, pressed, Modifiers::ALT);
+        harness.step();
+    }
+    hold(&mut harness, Modifiers::NONE);
+    harness.run_steps(3);
+    assert!(harness.query_by_label_contains("pixel 302, 22 of").is_some(), "its values are shown");
+    assert!(harness.query_by_label_contains("gtao works on whole pictures").is_some());
+    assert!(harness.query_by_label_contains("Waiting").is_none());
+    assert!(harness.get_by_label("Hits").accesskit_node().is_disabled());
+    assert_eq!(harness.state().canvas.inspector.asked(), None);
 }
 
 #[test]

@@ -53,7 +53,7 @@ pub struct Order {
 pub struct Level {
     /// Size relative to the one asked for, 1 at the end.
     pub scale: f32,
-    /// Rays a pixel.
+    /// Rays a pixel; 0 with a method that takes none.
     pub spp: u32,
     /// Whether this is the picture that was asked for.
     pub is_final: bool,
@@ -113,6 +113,8 @@ pub struct Rendered {
     pub aov: Aov,
     /// The view with everything chosen.
     pub view: View,
+    /// Who rendered it: with some methods the processor, whatever device the scene is open on.
+    pub machine: Machine,
     /// How far it is refined.
     pub level: Level,
     /// Frames of the sequence so far, where light is accumulated; 1 otherwise.
@@ -178,7 +180,7 @@ pub struct Opened {
     pub load_time: Duration,
     /// What building took.
     pub build: BuildStats,
-    /// Who renders.
+    /// Who renders it; a picture may be [someone else's](Rendered::machine).
     pub machine: Machine,
     /// Its cameras, in the order of the file.
     pub cameras: Vec<CameraInfo>,

@@ -71,6 +71,7 @@ impl Easel {
             settings,
             aov: look.aov,
             view: drawing.frame.view.clone(),
+            machine: renderer.machine(),
             level: *level,
             frames: *frames,
             stats: drawing.frame.stats,
@@ -89,7 +90,8 @@ impl Easel {
         drawing.is_copied = true;
         let frame = Arc::new(renderer.read_frame()?);
         let Step { side, settings, level, frames, .. } = drawing.step.clone();
-        gallery.hang(Shot { side, settings, level, frames, frame }, true);
+        let machine = renderer.machine();
+        gallery.hang(Shot { side, settings, machine, level, frames, frame }, true);
         Ok(())
     }
 }

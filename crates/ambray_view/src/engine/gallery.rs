@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
-use ambray::{Aov, Frame, settings::Settings};
+use ambray::{Aov, Frame, Machine, settings::Settings};
 
 use super::{
     contract::{Content, Difference, Event, Level, Opened, Order, Rendered, Statistics},
@@ -20,6 +20,8 @@ pub(super) struct Shot {
     pub(super) side: Side,
     /// What it was rendered with; how it is shown is up to the order.
     pub(super) settings: Settings,
+    /// Who rendered it.
+    pub(super) machine: Machine,
     /// How far it is refined.
     pub(super) level: Level,
     /// Frames whose mean it is.
@@ -247,6 +249,7 @@ fn rendered(shot: &Shot, look: &Look) -> Rendered {
         settings,
         aov: look.aov,
         view: shot.frame.view.clone(),
+        machine: shot.machine.clone(),
         level: shot.level,
         frames: shot.frames,
         stats: shot.frame.stats,

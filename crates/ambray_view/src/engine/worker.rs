@@ -162,6 +162,10 @@ impl Worker {
             self.waiting = Some((side, pixel));
             return;
         };
+        // Asked before the picture of such a method came, from which the window knows that there is nothing to tell.
+        if shot.settings.method.is_screen_space() {
+            return;
+        }
         let control = Control { threads: self.threads, ..Control::default() };
         let outcome = caught(|| open.renderer.inspect(&shot.settings, &shot.frame, pixel, control));
         let message = match outcome {
@@ -215,9 +219,12 @@ impl Worker {
         match drawn {
             Drawn::Host(frame) => {
                 self.easel.clear();
-                if step.is_shown {
+                if let Some(open) = self.open.as_ref().filter(|_| step.is_shown) {
                     let Step { side, settings, level, frames, .. } = step.clone();
-                    self.gallery.hang(Shot { side, settings, level, frames, frame: Arc::from(frame) }, false);
+                    // Asked after the work: the processor may have stepped in.
+                    let machine = open.renderer.machine_for(&settings);
+                    let frame = Arc::from(frame);
+                    self.gallery.hang(Shot { side, settings, machine, level, frames, frame }, false);
                 }
             }
             Drawn::Device(frame) => {

@@ -1,9 +1,9 @@
 //! The bar at the bottom: the animation, and light that accumulates.
 
 use ambray::settings::{Auto, Settings, Temporal};
-use egui::{Button, ComboBox, DragValue, Label, RichText, Slider, Ui};
+use egui::{Button, Checkbox, ComboBox, DragValue, Label, RichText, Slider, Ui};
 
-use super::{Desk, action::Action};
+use super::{Desk, action::Action, look, refusal};
 
 pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     ui.add_space(1.0);
@@ -107,15 +107,21 @@ fn picker(ui: &mut Ui, settings: &mut Settings, animations: &[(String, f32)]) {
 }
 
 fn accumulation(ui: &mut Ui, desk: &mut Desk<'_>) {
-    let mut is_on = desk.model.edited().temporal == Temporal::On;
+    let settings = desk.model.edited();
+    let mut is_on = settings.temporal == Temporal::On;
+    let refusal = refusal::of_choice(settings, "temporal", "on");
     let tip =
         "Light accumulates over frames: each continues the sample sequence and keeps what is still true";
-    let response = ui.checkbox(&mut is_on, "accumulate").on_hover_text(tip);
-    if response.changed() {
+    // What is on can always be switched off.
+    let is_enabled = is_on || refusal.is_none();
+    let response = ui.add_enabled(is_enabled, Checkbox::new(&mut is_on, "accumulate")).on_hover_text(tip);
+    if response.on_disabled_hover_text(refusal.as_deref().unwrap_or_default()).changed() {
         desk.model.edited_mut().temporal = if is_on { Temporal::On } else { Temporal::Off };
     }
     let frames = desk.shown.sides[desk.model.editing as usize].as_ref().map_or(0, |rendered| rendered.frames);
-    if is_on {
+    if let Some(reason) = refusal.filter(|_| is_on) {
+        ui.label(RichText::new("not allowed").color(look::ERROR)).on_hover_text(reason);
+    } else if is_on {
         let word = if frames == 1 { "frame" } else { "frames" };
         ui.label(RichText::new(format!("{frames:>3} {word}")).monospace());
     }

@@ -1,7 +1,7 @@
 //! The comparison of two settings, and pairs that are often compared.
 
-use ambray::settings::{Preset, Settings, Thin, Window};
-use egui::Ui;
+use ambray::settings::{Method, Preset, Settings, Thin, Window};
+use egui::{Button, Ui};
 
 use super::Desk;
 use crate::model::{Comparison, Model, Side};
@@ -38,17 +38,35 @@ pub(crate) const PAIRS: [Pair; 4] = [
     Pair {
         name: "this | converged reference",
         meaning: "The picture beside 1024 rays per pixel, unfiltered",
-        make: |_, b| Preset::Reference.patch().apply(b),
+        make: |_, b| {
+            Preset::Reference.patch().apply(b);
+            // No number of rays lets the depth buffer converge.
+            if b.method.is_screen_space() {
+                b.method = Method::Ambray;
+            }
+        },
     },
 ];
 
 impl Pair {
-    /// Shows the pair, made from side A.
-    pub(crate) fn apply(&self, model: &mut Model) {
+    /// The pair, made from side A.
+    fn made(&self, model: &Model) -> [Settings; 2] {
         let mut a = model.of(Side::A).clone();
         let mut b = a.clone();
         (self.make)(&mut a, &mut b);
-        model.settings = [a, b];
+        [a, b]
+    }
+
+    /// Why the pair cannot be rendered where side A can be.
+    fn refusal(&self, model: &Model) -> Option<String> {
+        let known = model.of(Side::A).validate();
+        let mut problems = self.made(model).into_iter().flat_map(|settings| settings.validate());
+        problems.find(|problem| !known.contains(problem)).map(|problem| problem.to_string())
+    }
+
+    /// Shows the pair.
+    pub(crate) fn apply(&self, model: &mut Model) {
+        model.settings = self.made(model);
         if model.comparison == Comparison::Off {
             model.compare(Comparison::Split);
         }
@@ -67,7 +85,9 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     }
     ui.separator();
     for pair in &PAIRS {
-        if ui.button(pair.name).on_hover_text(pair.meaning).clicked() {
+        let refusal = pair.refusal(desk.model);
+        let button = ui.add_enabled(refusal.is_none(), Button::new(pair.name)).on_hover_text(pair.meaning);
+        if button.on_disabled_hover_text(refusal.unwrap_or_default()).clicked() {
             pair.apply(desk.model);
         }
     }

@@ -12,6 +12,7 @@ mod help;
 pub mod keys;
 pub mod look;
 mod messages;
+mod refusal;
 mod settings;
 mod top;
 mod view_menu;

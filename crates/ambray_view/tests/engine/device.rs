@@ -5,7 +5,7 @@ use std::{fs, sync::Arc};
 use ambray::{
     Aov, BackendChoice, Control, Device, Frame, Machine, Renderer, RendererOptions, display,
     scene::atrium::atrium,
-    settings::{Auto, Settings, Temporal, Thin, Triple},
+    settings::{Auto, Method, Settings, Temporal, Thin, Triple},
     vulkan::{Context, DeviceOptions, VulkanError, testing::picture_bytes},
 };
 use ambray_view::{
@@ -219,4 +219,24 @@ fn a_busy_engine_is_dropped_and_the_device_is_left_in_order() {
     end(desk, &device);
     // Others go on with it.
     render(&device, &settings(16, 9));
+}
+
+#[test]
+fn a_method_of_the_processor_is_rendered_there_and_says_so() {
+    let Some(device) = device() else { return };
+    let mut desk = desk(&device);
+    for method in [Method::Ambray, Method::Gtao, Method::Ambray] {
+        let wanted = Settings { method, ..settings(32, 18) };
+        desk.engine.show(order(&wanted));
+        let rendered = desk.finished(Side::A, &wanted);
+        match method {
+            Method::Ambray => assert!(matches!(rendered.machine, Machine::Vulkan { .. }), "{rendered:?}"),
+            _ => assert!(
+                matches!(&rendered.machine, Machine::Cpu { reason: Some(reason), .. } if reason.contains("gtao")),
+                "{:?}",
+                rendered.machine
+            ),
+        }
+    }
+    end(desk, &device);
 }

@@ -4,7 +4,7 @@ use std::{fs, path::Path, sync::atomic::AtomicBool};
 
 use ambray::{
     Aov,
-    settings::{Settings, Temporal},
+    settings::{Method, Settings, Temporal},
 };
 use ambray_files::{Plan, atomic::Batch, head::Head};
 use ambray_view::{
@@ -144,4 +144,19 @@ fn a_pixel_tells_what_it_did() {
     assert_eq!(inspected.inspection.ray_count(), frame.gbuffer[index].rays as usize);
     desk.engine.inspect(Side::A, (64, 0));
     desk.until("the failure", |event| matches!(event, Event::InspectFailed { .. }).then_some(()));
+}
+
+#[test]
+fn pixels_without_rays_of_their_own_are_no_errors() {
+    let mut desk = Desk::with("atrium");
+    let gtao = Settings { method: Method::Gtao, ..settings(64, 36) };
+    desk.engine.show(order(&gtao));
+    desk.finished(Side::A, &gtao);
+    desk.engine.inspect(Side::A, (20, 30));
+    let traced = settings(64, 36);
+    desk.engine.show(order(&traced));
+    desk.finished(Side::A, &traced);
+    desk.engine.inspect(Side::A, (20, 30));
+    desk.until("the inspection", |event| matches!(event, Event::Inspected(_)).then_some(()));
+    assert!(!desk.events.iter().any(|event| matches!(event, Event::InspectFailed { .. })));
 }

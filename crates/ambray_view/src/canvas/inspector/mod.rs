@@ -81,6 +81,7 @@ impl Inspector {
         let is_asked = |(asked, of): &(Pin, Arc<Frame>)| *asked == pin && Arc::ptr_eq(of, frame);
         let is_there = pin.pixel.0 < frame.width && pin.pixel.1 < frame.height;
         if rendered.level.is_final
+            && rays_of_pixels(rendered).is_ok()
             && is_there
             && model.sides().contains(&pin.side)
             && !self.asked.as_ref().is_some_and(is_asked)
@@ -102,6 +103,12 @@ impl Inspector {
             Some(inspected) => drawing.inspection(&inspected.inspection, self.wanted),
             None => drawing.pixel(pin.pixel),
         }
+    }
+
+    /// The pixel that the engine was asked about last.
+    #[cfg(test)]
+    pub(super) fn asked(&self) -> Option<(u32, u32)> {
+        self.asked.as_ref().map(|(pin, _)| pin.pixel)
     }
 
     /// What the pinned pixel did, once the engine has said so.
@@ -140,8 +147,8 @@ impl Inspector {
             .default_height(0.6 * canvas.height())
             .vscroll(true)
             .show(ui.ctx(), |ui| {
-                let Some((pin, frame)) =
-                    subject.and_then(|pin| picture(shown, pin.side).map(|(_, frame)| (pin, frame)))
+                let Some((pin, rendered, frame)) = subject
+                    .and_then(|pin| picture(shown, pin.side).map(|(rendered, frame)| (pin, rendered, frame)))
                 else {
                     ui.label("Move the cursor over the picture. Alt+click inspects the rays of a pixel.");
                     return;
@@ -162,21 +169,34 @@ impl Inspector {
                 let values = egui::CollapsingHeader::new("Values").id_salt(("values", self.pinned.is_some()));
                 let values = values.default_open(self.pinned.is_none());
                 values.show(ui, |ui| window::values(ui, frame, pin.pixel));
+                let rays = rays_of_pixels(rendered);
                 if self.pinned.is_none() {
-                    ui.weak("Alt+click inspects the rays of a pixel.");
+                    ui.weak(rays.err().as_deref().unwrap_or("Alt+click inspects the rays of a pixel."));
                     return;
                 }
                 ui.separator();
-                self.wanted.edit(ui);
-                match self.answer(shown) {
-                    Some(inspected) => window::inspection(ui, &inspected.inspection),
-                    None => {
+                ui.add_enabled_ui(rays.is_ok(), |ui| self.wanted.edit(ui));
+                match (rays, self.answer(shown)) {
+                    (Err(reason), _) => {
+                        ui.weak(reason);
+                    }
+                    (Ok(()), Some(inspected)) => window::inspection(ui, &inspected.inspection),
+                    (Ok(()), None) => {
                         ui.weak("Waiting for the finished picture.");
                     }
                 }
             });
         model.is_inspecting = is_open;
     }
+}
+
+/// Whether it can be told what a pixel of the picture did; the error says why not.
+fn rays_of_pixels(rendered: &Rendered) -> Result<(), String> {
+    let method = rendered.settings.method;
+    if method.is_screen_space() {
+        return Err(format!("{method} works on whole pictures: there are no rays of a pixel to show."));
+    }
+    Ok(())
 }
 
 /// The picture of a side with its planes, where the processor has them.

@@ -26,7 +26,7 @@ pub(super) fn cost(size: Size, level: &Level) -> f64 {
 }
 
 /// Levels from the first picture that takes at most `quick` seconds to the one that is asked for: the scale doubles up to 1, then the rays
-/// a pixel quadruple.
+/// a pixel quadruple. Where `spp` is 0, since the method takes no rays, the size alone changes.
 pub(super) fn plan(size: Size, spp: u32, rate: Rate, quick: f64) -> Vec<Level> {
     let fits = |level: &Level| rate.seconds(cost(size, level)).is_some_and(|seconds| seconds <= quick);
     let last = Level { scale: 1.0, spp, is_final: true };
@@ -56,8 +56,9 @@ pub(super) fn plan(size: Size, spp: u32, rate: Rate, quick: f64) -> Vec<Level> {
 fn first(quick: u32, rate: Rate, fits: impl Fn(&Level) -> bool) -> Level {
     let level = |scale, spp| Level { scale, spp, is_final: false };
     let sizes = [1.0, 0.5, 0.25, COARSEST].map(|scale| level(scale, quick));
-    let fewer = [quick / 2, quick / 4].map(|spp| level(COARSEST, spp.max(1)));
-    let rays = if rate.is_known() { (quick / 4).max(1) } else { quick };
+    let least = quick.min(1);
+    let fewer = [quick / 2, quick / 4].map(|spp| level(COARSEST, spp.max(least)));
+    let rays = if rate.is_known() { (quick / 4).max(least) } else { quick };
     sizes.into_iter().chain(fewer).find(|level| fits(level)).unwrap_or(level(COARSEST, rays))
 }
 
@@ -128,6 +129,16 @@ mod tests {
         check(8, none, &[(0.125, 8), (0.25, 8), (0.5, 8), (1.0, 8)]);
         check(16, none, &[(0.125, 4), (0.25, 4), (0.5, 4), (1.0, 4), (1.0, 16)]);
         check(1, none, &[(0.125, 1), (0.25, 1), (0.5, 1), (1.0, 1)]);
+    }
+
+    #[test]
+    fn without_rays_the_size_alone_changes() {
+        let sizes = [(0.125, 0), (0.25, 0), (0.5, 0), (1.0, 0)];
+        check(0, Rate::default(), &sizes);
+        check(0, rate(0, 0.04), &[(1.0, 0)]);
+        check(0, rate(0, 0.15), &[(0.5, 0), (1.0, 0)]);
+        // However slow: there is nothing but the size to save at.
+        check(0, rate(0, 60.0), &sizes);
     }
 
     #[test]

@@ -23,11 +23,12 @@ impl Default for Pace {
 }
 
 impl Pace {
-    /// The level of the next picture of `size` with `spp` rays a pixel, of which `sides` are rendered for each moment.
+    /// The level of the next picture of `size` with `spp` rays a pixel, 0 if it takes none, of which `sides` are rendered for
+    /// each moment.
     pub(super) fn next(&mut self, size: Size, spp: u32, rate: Rate, sides: usize) -> Level {
         let level = |rung: usize| {
             let (scale, part) = LADDER[rung];
-            Level { scale, spp: (spp / part).max(1), is_final: scale == 1.0 }
+            Level { scale, spp: (spp / part).max(spp.min(1)), is_final: scale == 1.0 }
         };
         let seconds = |rung: usize| rate.seconds(cost(size, &level(rung)) * sides as f64);
         while self.0 > 0 && seconds(self.0).is_some_and(|seconds| seconds > SLOW) {
@@ -71,6 +72,7 @@ mod tests {
         check(&mut pace, 0.5, 1, 0.25);
         check(&mut pace, 100.0, 1, 0.125);
         assert_eq!(pace.next(SIZE, 1, rate(100.0), 2).spp, 1);
+        assert_eq!(pace.next(SIZE, 0, rate(100.0), 2).spp, 0);
     }
 
     #[test]

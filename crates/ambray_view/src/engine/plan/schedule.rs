@@ -3,7 +3,7 @@
 use ambray::settings::{Settings, Temporal};
 
 use super::{
-    levels::{cost, scaled},
+    levels::cost,
     pace::Pace,
     rate::{Rate, work},
     work::{Work, frame_settings, is_same},
@@ -156,10 +156,9 @@ impl Schedule {
     fn play(&mut self) -> Option<Step> {
         let count = self.open().count();
         let (side, work) = self.open().find(|(_, work)| work.shown.is_none())?;
-        let (mut settings, before) = (work.settings.clone(), work.frames);
-        let level = self.pace.next(settings.size, settings.spp, self.rate, count);
-        settings.size = scaled(settings.size, level.scale);
-        settings.spp = level.spp;
+        let (work, before) = (work.clone(), work.frames);
+        let level = self.pace.next(work.settings.size, work.spp(), self.rate, count);
+        let mut settings = work.settings_at(&level);
         let continues = self.history.is_some_and(|(of, _)| of == side);
         let accumulates = settings.temporal == Temporal::On;
         if accumulates {
@@ -180,7 +179,7 @@ impl Schedule {
     /// The next level of the side that is behind.
     fn refine(&self) -> Option<Step> {
         let behind = |(side, work): &(Side, &Work)| {
-            let asked = work.settings.spp as f32;
+            let asked = work.spp().max(1) as f32;
             let shown = work.shown.map_or((0.0, 0.0), |level| (level.scale, level.spp as f32 / asked));
             (shown, self.last == Some(*side))
         };
@@ -193,9 +192,7 @@ impl Schedule {
         let costs: Vec<f64> = work.left.iter().map(|level| cost(size, level)).collect();
         let all = costs.iter().sum::<f64>() + work.shown.map_or(0.0, |level| cost(size, &level));
         let before = all - costs.iter().sum::<f64>();
-        let mut settings = work.settings.clone();
-        settings.size = scaled(size, level.scale);
-        settings.spp = level.spp;
+        let mut settings = work.settings_at(&level);
         if !level.is_final {
             settings.temporal = Temporal::Off;
         }
@@ -225,7 +222,7 @@ impl Schedule {
         Some(Step {
             side,
             settings,
-            level: Level { scale: 1.0, spp: work.settings.spp, is_final: true },
+            level: Level { scale: 1.0, spp: work.spp(), is_final: true },
             frames: before + 1,
             begins: before == 0,
             is_shown: before + 1 > work.frames,
@@ -242,7 +239,7 @@ impl Schedule {
 
     /// `step` took `seconds`.
     pub(in crate::engine) fn done(&mut self, step: &Step, seconds: f64) {
-        self.rate.measured(work(step.settings.size, step.settings.spp), seconds);
+        self.rate.measured(work(step.settings.size, step.level.spp), seconds);
         self.last = Some(step.side);
         if step.settings.temporal == Temporal::On {
             self.history = Some((step.side, step.frames));

@@ -2,7 +2,7 @@
 
 use ambray::{
     Aov,
-    settings::{Auto, Settings, Size, Temporal},
+    settings::{Auto, Method, Settings, Size, Temporal},
 };
 
 use super::*;
@@ -140,4 +140,40 @@ fn a_picture_that_is_lost_is_made_again_unless_it_is_under_way() {
     schedule.again(Side::A);
     let steps = names(&mut schedule, 20);
     assert!(!steps.is_empty() && steps.iter().all(|step| step.0 == Side::A), "{steps:?}");
+}
+
+#[test]
+fn methods_without_rays_are_refined_in_size_alone() {
+    for method in [Method::Ssao, Method::Hbao, Method::Gtao, Method::Bitmask] {
+        let mut schedule = Schedule::default();
+        let asked = Settings { method, ..settings(1024) };
+        schedule.take(&order(&asked, None));
+        let steps: Vec<Step> = std::iter::from_fn(|| step(&mut schedule)).take(20).collect();
+        let sizes: Vec<u32> = steps.iter().map(|step| step.settings.size.width).collect();
+        assert_eq!(sizes, [80, 160, 320, 640], "{method}");
+        // The last one is what was asked for, to the letter; none is a picture that was there before.
+        assert_eq!(steps.last().map(|step| &step.settings), Some(&asked));
+        assert!(steps.iter().all(|step| step.settings.spp == 1024 && step.level.spp == 0));
+    }
+    // Where the depth buffer cannot know, rays are taken: their number counts.
+    let mut schedule = Schedule::default();
+    schedule.take(&order(&Settings { method: Method::Hybrid, ..settings(64) }, None));
+    let spp: Vec<u32> = names(&mut schedule, 20).iter().map(|step| step.2).collect();
+    assert_eq!(spp, [4, 4, 4, 4, 16, 64]);
+}
+
+#[test]
+fn what_takes_no_rays_does_not_make_rays_look_quick() {
+    let mut schedule = Schedule::default();
+    schedule.take(&order(&Settings { method: Method::Gtao, ..settings(1024) }, None));
+    while let Some(step) = schedule.next() {
+        schedule.begin();
+        schedule.done(&step, 0.01);
+    }
+    // If the 0.01 seconds had been those of 1024 rays a pixel, they would seem to fit into the 0.05 of a first picture.
+    schedule.take(&order(&settings(1024), None));
+    assert!(
+        schedule.next().is_some_and(|first| first.level.spp <= 4),
+        "the first picture would block the window"
+    );
 }

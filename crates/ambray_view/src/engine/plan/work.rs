@@ -1,6 +1,6 @@
 //! What is to be done for one side, and how far it is.
 
-use ambray::settings::{Settings, Temporal};
+use ambray::settings::{Method, Settings, Temporal};
 
 use super::{levels, rate::Rate};
 use crate::engine::contract::Level;
@@ -45,6 +45,18 @@ impl Work {
         Self { settings, left: Vec::new(), shown: None, frames: 0, is_refused: false }
     }
 
+    /// Rays a pixel that are asked for; 0 where the method looks at the depth buffer alone, so that they change nothing.
+    pub(super) fn spp(&self) -> u32 {
+        let method = self.settings.method;
+        if method.is_screen_space() && method != Method::Hybrid { 0 } else { self.settings.spp }
+    }
+
+    /// The settings of a picture at `level`.
+    pub(super) fn settings_at(&self, level: &Level) -> Settings {
+        let spp = if level.spp > 0 { level.spp } else { self.settings.spp };
+        Settings { size: levels::scaled(self.settings.size, level.scale), spp, ..self.settings.clone() }
+    }
+
     /// Whether light accumulates over frames.
     pub(super) fn accumulates(&self) -> bool {
         self.settings.temporal == Temporal::On
@@ -52,7 +64,7 @@ impl Work {
 
     /// Plans what is left to be done, from a picture that takes at most `quick` seconds; only that if something `is_moving`.
     pub(super) fn plan(&mut self, rate: Rate, quick: f64, is_moving: bool) {
-        let mut levels = levels::plan(self.settings.size, self.settings.spp, rate, quick);
+        let mut levels = levels::plan(self.settings.size, self.spp(), rate, quick);
         if is_moving {
             levels.truncate(1);
         }

@@ -121,35 +121,58 @@ fn level(ui: &mut Ui, desk: &Desk<'_>) {
         let level = rendered.level;
         let name = if desk.model.sides().len() == 2 { format!("{side:?}: ") } else { String::new() };
         let size = rendered.settings.size;
+        let rays = if level.spp > 0 { format!(", {} rays a pixel", level.spp) } else { String::new() };
         let state = match desk.shown.progress[side as usize] {
             Some(share) => format!("{name}refining, {:.0} %", 100.0 * share),
-            None if level.is_final => format!("{name}final, {size}, {} rays a pixel", level.spp),
-            None => format!("{name}scale {:.3}, {} rays a pixel", level.scale, level.spp),
+            None if level.is_final => format!("{name}final, {size}{rays}"),
+            None => format!("{name}scale {:.3}{rays}", level.scale),
         };
         let known = if level.is_final { 1.0 } else { level.scale * level.scale };
         look::share_bar(ui, desk.shown.progress[side as usize].unwrap_or(known), &state);
     }
 }
 
+/// Who rendered the pictures that are shown, and what these take.
 fn machine(ui: &mut Ui, desk: &Desk<'_>) {
     let Some(opened) = &desk.shown.opened else { return };
-    match &opened.machine {
-        Machine::Cpu { isa, .. } => look::fact(ui, "machine", format!("processor, {isa}")),
-        Machine::Vulkan { device, trace } => {
-            look::fact(ui, "machine", device);
-            look::fact(ui, "rays", format!("{trace:?}").to_lowercase());
+    let sides = desk.model.sides();
+    let rendered: Vec<_> =
+        sides.iter().filter_map(|&side| desk.shown.sides[side as usize].as_ref()).collect();
+    match &rendered[..] {
+        [a, b] if a.machine != b.machine => {
+            for rendered in [a, b] {
+                named(ui, &format!("machine {:?}", rendered.side), &rendered.machine);
+            }
         }
+        [rendered, ..] => named(ui, "machine", &rendered.machine),
+        [] => named(ui, "machine", &opened.machine),
     }
     look::fact(ui, "trees", look::bytes(opened.build.acceleration_bytes));
-    let on_device = matches!(opened.machine, Machine::Vulkan { .. });
-    look::fact(ui, "planes", look::bytes(planes(desk, on_device)));
-    if let Machine::Cpu { reason: Some(reason), .. } = &opened.machine {
-        ui.add(egui::Label::new(RichText::new(format!("No device: {reason}")).weak().small()).wrap());
+    look::fact(ui, "planes", look::bytes(planes(desk)));
+}
+
+fn named(ui: &mut Ui, name: &str, machine: &Machine) {
+    match machine {
+        Machine::Cpu { isa, reason } => {
+            look::fact(ui, name, format!("processor, {isa}"));
+            if let Some(reason) = reason {
+                let text = RichText::new(format!("On the processor: {reason}")).weak().small();
+                ui.add(egui::Label::new(text).wrap());
+            }
+        }
+        Machine::Vulkan { device, trace } => {
+            look::fact(ui, name, device);
+            look::fact(ui, "rays", format!("{trace:?}").to_lowercase());
+        }
     }
 }
 
 /// Bytes of the pictures of the sides that are shown; on a device one takes the place of the other.
-fn planes(desk: &Desk<'_>, on_device: bool) -> u64 {
-    let each = desk.shown.sides.iter().flatten().map(|rendered| rendered.frame_bytes);
-    if on_device { each.max().unwrap_or(0) } else { each.sum() }
+fn planes(desk: &Desk<'_>) -> u64 {
+    let of = |on_device: bool| {
+        let rendered = desk.shown.sides.iter().flatten();
+        let rendered = rendered.filter(move |r| matches!(r.machine, Machine::Vulkan { .. }) == on_device);
+        rendered.map(|rendered| rendered.frame_bytes)
+    };
+    of(true).max().unwrap_or(0) + of(false).sum::<u64>()
 }

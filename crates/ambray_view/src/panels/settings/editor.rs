@@ -1,12 +1,13 @@
 //! Editors of single settings, by the kind of their values. They read and give the spelling of the command line.
 
-use ambray::settings::{Field, Kind};
-use egui::{Color32, DragValue, Id, Response, Slider, SliderClamping, TextEdit, Ui};
+use ambray::settings::{Field, Kind, Settings};
+use egui::{Button, Color32, DragValue, Id, Response, Slider, SliderClamping, TextEdit, Ui};
 
 use super::{
     places::{self, PART_GAP, PATCH},
     scale::{self, Extent, Scale},
 };
+use crate::panels::refusal;
 
 /// A setting that is being edited.
 #[derive(Debug)]
@@ -15,6 +16,8 @@ pub(crate) struct Editor<'a> {
     pub(crate) field: &'static Field,
     /// Its value; `auto` is replaced by what it became.
     pub(crate) text: &'a str,
+    /// The settings that it is one of: they may not allow every value.
+    pub(crate) settings: &'a Settings,
     /// The scene's extent.
     pub(crate) extent: Extent,
     /// Names to choose from, for settings that name things of the scene.
@@ -105,7 +108,12 @@ impl Editor<'_> {
             .selected_text(self.text)
             .show_ui(ui, |ui| {
                 for (name, meaning) in choices {
-                    if ui.selectable_label(*name == self.text, *name).on_hover_text(*meaning).clicked() {
+                    let is_chosen = *name == self.text;
+                    let refusal = refusal::of_choice(self.settings, self.field.name, name);
+                    let label = Button::selectable(is_chosen, *name);
+                    let label = ui.add_enabled(is_chosen || refusal.is_none(), label);
+                    let label = label.on_hover_text(*meaning);
+                    if label.on_disabled_hover_text(refusal.unwrap_or_default()).clicked() {
                         chosen = Some((*name).to_owned());
                     }
                 }

@@ -10,7 +10,7 @@ pub(crate) mod scale;
 use ambray::settings::{Field, Settings, SettingsError};
 use egui::{CollapsingHeader, RichText, ScrollArea, Ui, pos2, vec2};
 
-use super::{Desk, look};
+use super::{Desk, look, refusal};
 use crate::model::{Comparison, Model, Resolution, Side};
 use row::Row;
 use scale::Extent;
@@ -26,13 +26,13 @@ struct Context {
 /// Draws the panel.
 pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>, search: &mut String) {
     header::show(ui, desk, search);
-    refusals(ui, desk);
     let context = Context {
         extent: extent(desk),
         defaults: Settings::default(),
         problems: desk.model.edited().validate(),
         search: search.trim().to_lowercase(),
     };
+    refusals(ui, desk, &context.problems);
     ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         let mut fields = Settings::fields();
         while let Some(first) = fields.first() {
@@ -44,8 +44,14 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>, search: &mut String) {
     });
 }
 
-/// Why the edited side cannot be rendered, apart from values that are shown beside their settings.
-fn refusals(ui: &mut Ui, desk: &Desk<'_>) {
+/// Why the edited side cannot be rendered. What is wrong with single values is said beside them, but their groups may be closed.
+fn refusals(ui: &mut Ui, desk: &Desk<'_>, problems: &[SettingsError]) {
+    let names: Vec<_> = problems.iter().map(|problem| problem.name).collect();
+    if !names.is_empty() {
+        let verb = if names.len() == 1 { "is" } else { "are" };
+        let text = format!("The picture stays as it was: {} {verb} not allowed", refusal::listed(&names));
+        ui.add(egui::Label::new(RichText::new(text).color(look::ERROR)).wrap());
+    }
     for message in &desk.shown.refused[desk.model.editing as usize] {
         ui.add(egui::Label::new(RichText::new(message).color(look::ERROR)).wrap());
     }

@@ -1,6 +1,6 @@
 //! One setting: dot, name, editor, `auto`.
 
-use ambray::settings::{Field, Kind};
+use ambray::settings::{Field, Kind, Settings};
 use egui::{Color32, Label, RichText, Sense, Ui};
 
 use super::{
@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{
     model::Resolution,
-    panels::{Desk, look},
+    panels::{Desk, look, refusal},
 };
 
 /// What is known of a setting in this frame.
@@ -93,6 +93,9 @@ impl Row {
                 ui.add(Label::new(RichText::new(text).color(look::ERROR).small()).wrap());
             });
         }
+        if field.name == "method" {
+            method_alone(ui, desk);
+        }
     }
 
     fn widgets(&self, ui: &mut Ui, desk: &mut Desk<'_>, context: &Context) -> Edit {
@@ -105,7 +108,8 @@ impl Row {
         look::inside(ui, places.dot, |ui| self.dot(ui, desk, context, &name, &default));
         let label = look::inside(ui, places.name, |ui| self.label(ui, desk, &name, &default));
         let (text, is_auto) = (if self.is_auto() { self.start() } else { self.text.clone() }, self.is_auto());
-        let editor = Editor { field, text: &text, extent: self.extent, names: &self.names, label };
+        let settings = desk.model.edited();
+        let editor = Editor { field, text: &text, settings, extent: self.extent, names: &self.names, label };
         let mut edit = look::inside(ui, places.editor, |ui| {
             if is_auto {
                 ui.visuals_mut().override_text_color = Some(Color32::from_gray(128));
@@ -171,4 +175,24 @@ impl Row {
         });
         response.changed().then(|| if is_auto { "auto".to_owned() } else { self.start() })
     }
+}
+
+/// What the method that was chosen does not go with, and a button that resets it. The method is what was wanted last: the others
+/// give way, but not unasked, since they would be missed by who goes back to another method.
+fn method_alone(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let names: Vec<_> = refusal::by_method(desk.model.edited()).iter().map(|problem| problem.name).collect();
+    if names.is_empty() {
+        return;
+    }
+    let listed = refusal::listed(&names);
+    ui.horizontal_wrapped(|ui| {
+        ui.add_space(16.0);
+        let text = format!("{} does not go with {listed}", desk.model.edited().method);
+        ui.label(RichText::new(text).color(look::ERROR).small());
+        if ui.small_button(format!("Reset {listed}")).clicked() {
+            for field in Settings::fields().iter().filter(|field| names.contains(&field.name)) {
+                reset(desk.model, field);
+            }
+        }
+    });
 }
