@@ -90,8 +90,8 @@ fn a_corner_in_full_view_is_found_in_the_depth_buffer() {
         let (apart, most) = difference(&found.openness, &truth);
         // The planes are met exactly: only steps over pixels of the other side of the corner are left.
         assert!(apart < 1e-3 && most < 0.02, "{apart} {most}");
-        // In the middle, farther than the radius from the border, everything is known.
-        assert_eq!(found.rays[60 * 120 + 60], 0);
+        // In the middle, farther than the radius from the border, everything is known but where the planes meet.
+        assert_eq!((found.rays[60 * 120 + 60], found.rays[63 * 120 + 60]), (64, 0));
         assert!(share(&found) < 0.35, "{}", share(&found));
         assert!(truth[63 * 120 + 60] < 0.8, "{}", truth[63 * 120 + 60]);
     }
@@ -223,15 +223,19 @@ fn a_fin_seen_at_a_glancing_angle_ends_where_it_ends() {
     for shift in [0.0, 0.013, 0.031, 0.044] {
         let camera = parallel(DVec3::new(shift, 5.0, 0.0) - 0.4 * forward, forward, (80, 60), 20.0);
         let seen = see(&scene, camera, 1.0, &settings());
-        let (found, truth) = (default(&scene, &seen), traced(&scene, &seen, &settings()));
+        let truth = traced(&scene, &seen, &settings());
+        // Steps small enough not to pass behind the fin within one.
+        let ultra = Hybrid::of(&Settings { screen_quality: ScreenQuality::Ultra, ..settings() });
+        let found = estimate(&ultra, &scene, &seen, &Control::default());
         let (apart, most) = difference(&found.openness, &truth);
-        println!("{shift} {apart} {most} {}", share(&found));
+        assert!(apart < 2.5e-3 && most < 0.045, "{shift}: {apart} {most}");
+        assert!(share(&found) < 0.4, "{shift}: {}", share(&found));
     }
 }
 
 #[test]
-fn pleats_finer_than_pixels_do_not_block_each_other_twice() {
-    // A curtain of pleats, 6 cm wide and 10 cm deep, over a floor, from the side: 12 pixels for a unit.
+fn pleats_about_as_fine_as_pixels_block_no_more_than_they_do() {
+    // A curtain of pleats over a floor, one and a half pixels wide and deeper than that, seen from the side.
     let pleat = |i: i32| {
         let (x, side) = (0.03 * f64::from(i), f64::from(i.rem_euclid(2)));
         let (near, far) = (DVec3::new(x, 0.0, 0.1 * side), DVec3::new(0.03, 0.0, 0.1 * (1.0 - 2.0 * side)));
@@ -244,5 +248,7 @@ fn pleats_finer_than_pixels_do_not_block_each_other_twice() {
     let seen = see(&scene, camera, 1.0, &settings());
     let (found, truth) = (default(&scene, &seen), traced(&scene, &seen, &settings()));
     let (apart, most) = difference(&found.openness, &truth);
-    println!("{apart} {most} {}", share(&found));
+    // The flanks are met where they are, or not at all: their planes, which reach far beyond them, make 0.009 and 0.17.
+    assert!(apart < 2e-4 && most < 0.02, "{apart} {most}");
+    assert!(share(&found) < 0.4, "{}", share(&found));
 }

@@ -9,8 +9,8 @@ use crate::Screen;
 const NOWHERE: f32 = 1e30;
 
 /// Height of a neighbour over the plane of a pixel up to which both show one surface, pixels: where two surfaces meet at 45°
-/// it may be 0.7. Measured with [`GAP`] on the atrium at 320 × 180, 64 rays, against tracing all of them: RMSE 0.011 with 44 %
-/// of the rays without either, 0.006 with 63 %, 0.005 with 74 % where nothing rises more than 0.05 nor falls more than 1.
+/// it may be 0.7. Measured with [`GAP`] on the atrium at 320 × 180, against tracing all of 64 rays a pixel: an RMSE of 0.006
+/// with 63 % of the rays; of about 0.011 with 45 % where every pixel counts as clear, and 0.005 with 69 % at 0.3 and 1.5.
 const RISE: f32 = 0.4;
 
 /// Depth of a neighbour below the plane of a pixel up to which both show one surface, pixels.
@@ -74,8 +74,8 @@ impl Facets {
     fn is_one_surface(&self, camera: &Camera, x: i32, y: i32) -> bool {
         let own = self.at(x, y);
         let pixel = camera.footprint(camera.depth(own.position));
-        let around = (-1..=1).flat_map(|i| (-1..=1).map(move |j| (i, j)));
-        around.into_iter().all(|(i, j)| own.continues_in(&self.at(x + i, y + j), pixel))
+        let mut around = (-1..=1).flat_map(|i| (-1..=1).map(move |j| (i, j)));
+        around.all(|(i, j)| own.continues_in(&self.at(x + i, y + j), pixel))
     }
 
     /// Whether the camera sees what is within a pixel of `place`. It does not where surfaces meet or where one hides another:

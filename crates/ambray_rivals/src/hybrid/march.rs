@@ -23,8 +23,13 @@ const FAR: f32 = 1e3;
 /// Distance from a plane to which something counts as on it, pixels.
 const FLAT: f32 = 0.05;
 
-/// Distance from the point that a pixel shows to which its plane is taken for what is there, pixels.
+/// Distance from the point that a pixel shows to which its plane is taken for what is there, pixels. Measured as
+/// `facets::RISE` is, hits where nothing is make up an RMSE of 0.0007, and of 0.0021 at twice this with 1 % fewer rays.
 const EXTENT: f32 = 0.5;
+
+/// Pixels around a place that have to agree on what is known, and those that are asked for a guess.
+const ALL_AROUND: usize = 4;
+const NEAREST: usize = 1;
 
 /// What the depth buffer knows about a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,16 +108,23 @@ impl<'a> DepthBuffer<'a> {
         Self { camera, facets: Facets::new(camera, gbuffer), steps, thickness }
     }
 
-    /// Follows `ray`, which starts on something seen.
+    /// Follows `ray`, which starts on something seen. With a thickness, what is not known is guessed.
     pub(super) fn march(&self, ray: &Ray) -> Verdict {
         let Some(segment) = self.segment(ray) else { return Verdict::Unknown };
-        if !self.facets.is_clear(segment.from) {
-            return Verdict::Unknown;
+        let is_clear = self.facets.is_clear(segment.from);
+        let verdict = if is_clear { self.follow(&segment, ALL_AROUND) } else { Verdict::Unknown };
+        match verdict {
+            Verdict::Unknown if self.thickness > 0.0 => self.follow(&segment, NEAREST),
+            verdict => verdict,
         }
+    }
+
+    /// Follows a ray, and asks `pixels` of those around each of its places.
+    fn follow(&self, segment: &Segment, pixels: usize) -> Verdict {
         let mut front = 0.0;
         for s in segment.places(self.steps) {
-            if let Some(behind) = self.behind(&segment, s) {
-                return self.crossing(&segment, front, behind);
+            if let Some(behind) = self.behind(segment, s, pixels) {
+                return self.crossing(segment, front, behind, pixels);
             }
             front = s;
         }
@@ -144,15 +156,15 @@ impl<'a> DepthBuffer<'a> {
     /// it, however coarse the pixels are. Where one piece ends and the next begins is not known to less than a pixel, so the
     /// four pixels around the ray are asked: it is in front of an edge if it is in front of either side of it, and in front of
     /// anything else if it is in front of all four.
-    fn behind(&self, segment: &Segment, s: f32) -> Option<Behind> {
+    fn behind(&self, segment: &Segment, s: f32, pixels: usize) -> Option<Behind> {
         let around = self.facets.around(segment.pixel(s));
+        let around = &around[..pixels];
         let at = segment.ray.origin + segment.ray.direction * segment.distance(s);
-        let heights = around.map(|facet| facet.height(at));
-        if heights.iter().all(|height| *height >= 0.0) {
+        if around.iter().all(|facet| facet.height(at) >= 0.0) {
             return None;
         }
         let tolerance = FLAT * self.camera.footprint(self.camera.depth(at));
-        let sides = || around.iter().zip(heights);
+        let sides = || around.iter().map(|facet| (facet, facet.height(at)));
         let over_edge = |seen: &Facet| {
             sides().any(|(other, height)| height >= 0.0 && seen.makes_edge_with(other, tolerance))
         };
@@ -161,10 +173,10 @@ impl<'a> DepthBuffer<'a> {
     }
 
     /// What happened between `front`, where the ray was in front of what is seen, and `behind`.
-    fn crossing(&self, segment: &Segment, mut front: f32, mut behind: Behind) -> Verdict {
+    fn crossing(&self, segment: &Segment, mut front: f32, mut behind: Behind, pixels: usize) -> Verdict {
         for _ in 0..REFINEMENTS {
             let middle = 0.5 * (front + behind.s);
-            match self.behind(segment, middle) {
+            match self.behind(segment, middle, pixels) {
                 Some(nearer) => behind = nearer,
                 None => front = middle,
             }
@@ -177,8 +189,9 @@ impl<'a> DepthBuffer<'a> {
         if steepness > 0.0 && through >= earliest && self.is_seen(&segment.ray, &behind.seen, through) {
             return Verdict::Hit(through);
         }
-        // Past an edge of what is seen: into its side if it is thick enough.
-        if self.is_within(&segment.ray, &behind, after) { Verdict::Hit(after) } else { Verdict::Unknown }
+        // Past an edge of what is seen: into its side if it is thick enough, as a guess.
+        let is_guess = pixels == NEAREST && self.is_within(&segment.ray, &behind, after);
+        if is_guess { Verdict::Hit(after) } else { Verdict::Unknown }
     }
 
     /// Whether the plane of `seen` is what the camera sees where `ray` goes through it at `distance`: near the point that its

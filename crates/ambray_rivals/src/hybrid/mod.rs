@@ -12,9 +12,12 @@
 //! - It stays in front of everything seen, to its end: a miss, since that space is empty.
 //! - It leaves the picture: not known.
 //!
-//! The thickness is 0 unless it is set, so that guesses are left to those who want them. What is not known is traced, from the
-//! start of the ray. So the depth buffer saves rays, and errs only where the steps of a
-//! ray pass over something, where a pixel shows more than a plane, or where the thickness is wrong.
+//! In front of an edge that sticks out means in front of either side, else in front of all four pixels around the ray.
+//!
+//! The thickness is 0 unless it is set, so that guesses are left to those who want them: what is not known is then asked of
+//! the nearest pixels alone. What is still not known is traced, from the start of the ray. So the depth buffer saves rays, and
+//! errs only where the steps of a ray pass over something, where something narrower than a pixel is not in the picture, or
+//! where a guess is wrong.
 
 mod facets;
 mod march;
