@@ -18,7 +18,7 @@ pub fn explain(error: &clap::Error, arguments: &[OsString]) -> anyhow::Error {
 }
 
 fn problem(error: &clap::Error) -> String {
-    let argument = text(error, ContextKind::InvalidArg).map(|spelled| option(&spelled).to_owned());
+    let argument = arguments(error);
     let value = text(error, ContextKind::InvalidValue);
     match (error.kind(), argument, value) {
         (ErrorKind::ValueValidation, Some(name), Some(value)) => {
@@ -38,7 +38,9 @@ fn problem(error: &clap::Error) -> String {
         (ErrorKind::TooManyValues, Some(name), Some(value)) => {
             format!("{name}: {value} is one value too many")
         }
-        (ErrorKind::MissingRequiredArgument, Some(names), _) => format!("{names} is missing"),
+        (ErrorKind::MissingRequiredArgument, Some(names), _) => {
+            format!("{names} {} missing", if names.contains(" and ") { "are" } else { "is" })
+        }
         _ => match text(error, ContextKind::InvalidSubcommand) {
             Some(name) => format!("there is no command {name}"),
             None => plain(error),
@@ -68,6 +70,23 @@ fn text(error: &clap::Error, kind: ContextKind) -> Option<String> {
     match error.get(kind)? {
         ContextValue::String(text) => Some(text.clone()),
         ContextValue::Strings(texts) => Some(texts.join(", ")),
+        _ => None,
+    }
+}
+
+/// The names of what `error` is about, each without what clap spells around it.
+fn arguments(error: &clap::Error) -> Option<String> {
+    match error.get(ContextKind::InvalidArg)? {
+        ContextValue::String(spelled) => Some(option(spelled).to_owned()),
+        ContextValue::Strings(spelled) => {
+            let names: Vec<&str> = spelled.iter().map(|spelled| option(spelled)).collect();
+            let (last, before) = names.split_last()?;
+            Some(if before.is_empty() {
+                (*last).to_owned()
+            } else {
+                format!("{} and {last}", before.join(", "))
+            })
+        }
         _ => None,
     }
 }
@@ -120,5 +139,7 @@ mod tests {
         check(&["rendre"], "there is no command rendre");
         check(&["render", "a.glb", "b.glb"], "b.glb is one word too many");
         check(&["query", "a.glb"], "--points is missing");
+        check(&["diff"], "PICTURE and REFERENCE are missing");
+        check(&["diff", "a.png"], "REFERENCE is missing");
     }
 }

@@ -15,7 +15,7 @@ use anyhow::{anyhow, bail};
 
 use self::{
     layer::Compared,
-    report::{DiffReport, SettingReport},
+    report::{DiffReport, LayerReport, SettingReport},
 };
 use crate::{
     args::DiffArgs,
@@ -23,6 +23,9 @@ use crate::{
     report::json,
     terminal,
 };
+
+/// Width of the window of SSIM, pixels (Wang et al. 2004, §III.B).
+const SSIM_WINDOW: usize = 11;
 
 /// Compares two pictures; the error is [`OverTolerance`] if they differ by too much.
 pub fn run(args: &DiffArgs) -> anyhow::Result<()> {
@@ -160,23 +163,32 @@ fn chosen<'a>(
 fn failures(layers: &[Compared], measure: Measure, tolerance: f64) -> anyhow::Result<Vec<String>> {
     let mut failures = Vec::new();
     for Compared { report, .. } in layers {
-        let Some(value) = report.measures.get(measure) else {
-            return Err(with_hint(
-                anyhow!("--measure {measure} does not apply to layer {}", report.name),
-                "--layer chooses others, and rmse applies to all",
-            ));
-        };
+        let value = report.measures.get(measure);
+        if value.is_none() && !report.has_no_pixels_for(measure) {
+            return Err(not_measured(report, measure));
+        }
         let side = if measure.better() == Better::Larger { "below" } else { "over" };
         if report.not_finite > 0 {
             let count = crate::report::counted(report.not_finite as u64, "pixel");
             failures.push(format!("{}: {count} infinite or not a number on one side", report.name));
-        } else if !measure.is_within(value, tolerance) {
+        } else if let Some(value) = value.filter(|&value| !measure.is_within(value, tolerance)) {
             let value = report::number(measure, value);
             failures
                 .push(format!("{}: {measure} {value} is {side} the tolerance of {tolerance}", report.name));
         }
     }
     Ok(failures)
+}
+
+/// Why `measure` has no value in a layer: its kind, or its size.
+fn not_measured(layer: &LayerReport, measure: Measure) -> anyhow::Error {
+    let hint = "--layer chooses others, and rmse applies to all";
+    if measure == Measure::Ssim && layer.measures.flip.is_some() {
+        let side = SSIM_WINDOW;
+        let told = anyhow!("--measure ssim needs at least {side}x{side} pixels: its window is that large");
+        return with_hint(told, "rmse and flip apply to any size");
+    }
+    with_hint(anyhow!("--measure {measure} does not apply to layer {}", layer.name), hint)
 }
 
 /// The settings that a picture holds, if it holds any that this version reads and allows.

@@ -191,6 +191,35 @@ fn pictures_that_cannot_be_compared_say_why() {
 }
 
 #[test]
+fn edges_that_are_not_there_are_not_wrong() {
+    let bench = with_pair();
+    // The reference a.png is flat: no neighbours differ, so no pixel is at an edge; away from edges the error is 0.2/√192.
+    let by = |measure: &str| bench.run(&["diff", "b.png", "a.png", "--quiet", "--measure", measure]);
+    by("edge-rmse").succeeds();
+    by("flat-rmse").differs("");
+    let report = bench.run(&["diff", "a.png", "a.png", "--measure=edge-rmse", "--json"]).succeeds().json();
+    assert_eq!(report["is_within"], Value::Bool(true));
+    assert_eq!(report["layers"][0]["measures"].get("edge-rmse"), None, "there is nothing to measure");
+    // In a chequered reference every pixel is at an edge, and none is flat.
+    let chequered: Vec<u8> = (0..16 * 12).map(|i| if (i % 16 + i / 16) % 2 == 0 { 0 } else { 255 }).collect();
+    fs::write(bench.path("chequered.png"), grey(16, &chequered)).expect("picture");
+    let by = |measure: &str| bench.run(&["diff", "a.png", "chequered.png", "--quiet", "--measure", measure]);
+    by("flat-rmse").succeeds();
+    by("edge-rmse").differs("");
+}
+
+#[test]
+fn a_picture_too_small_for_ssim_is_no_agreement() {
+    let bench = Bench::new();
+    for (name, height) in [("small.png", 10), ("large.png", 11)] {
+        fs::write(bench.path(name), grey(16, &vec![51; 16 * height])).expect("picture");
+    }
+    let by = |name: &str| bench.run(&["diff", name, name, "--measure=ssim", "--tolerance=0.9"]);
+    by("small.png").fails(&["--measure ssim needs at least 11x11 pixels", "hint: rmse"]);
+    by("large.png").succeeds();
+}
+
+#[test]
 fn errors_become_a_picture() {
     let bench = with_pair();
     let picture = |more: &[&str]| {

@@ -105,6 +105,8 @@ fn wrong_command_lines_are_told_in_one_line() {
         "ambray: error: there is no option --sise\n  hint: did you mean --size?\n",
     );
     check(&["query", "scene.obj"], "ambray: error: --points is missing\n");
+    check(&["diff"], "ambray: error: PICTURE and REFERENCE are missing\n");
+    check(&["diff", "a.png"], "ambray: error: REFERENCE is missing\n");
     check(
         &["scene.obj"],
         "ambray: error: there is no command scene.obj\n  hint: to render a scene: ambray render scene.obj ...\n",

@@ -49,6 +49,17 @@ pub(super) struct LayerReport {
     pub(super) measures: Measures,
 }
 
+impl LayerReport {
+    /// Whether `measure` would apply, but looks at a part of the pixels of which there are none: without edges in the
+    /// reference, nothing is wrong at edges.
+    pub(super) fn has_no_pixels_for(&self, measure: Measure) -> bool {
+        // The parts are measured wherever there is a peak, and so a PSNR.
+        matches!(measure, Measure::EdgeRmse | Measure::FlatRmse)
+            && self.measures.psnr.is_some()
+            && self.measures.get(measure).is_none()
+    }
+}
+
 impl DiffReport {
     /// A table for people.
     pub(super) fn text(&self) -> String {
