@@ -224,7 +224,11 @@ fn a_busy_engine_is_dropped_and_the_device_is_left_in_order() {
 #[test]
 fn a_method_of_the_processor_is_rendered_there_and_says_so() {
     let Some(device) = device() else { return };
-    let mut desk = desk(&device);
+    // With the device alone, the method would be refused.
+    let options = RendererOptions { backend: BackendChoice::Auto, ..options(&device) };
+    let mut desk = Desk::of(options, true);
+    desk.engine.open(&SceneRef::new("atrium"));
+    assert!(matches!(desk.opened().machine, Machine::Vulkan { .. }));
     for method in [Method::Ambray, Method::Gtao, Method::Ambray] {
         let wanted = Settings { method, ..settings(32, 18) };
         desk.engine.show(order(&wanted));
