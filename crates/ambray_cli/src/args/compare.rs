@@ -41,18 +41,19 @@ pub struct CompareArgs {
     pub runs: u32,
     /// Compare this many frames of an animation too: flicker, and how late accumulated light is
     #[arg(
-        long, value_name = "N", help_heading = HEADING, value_parser = |text: &str| whole::<u32>(text, 2, MOST_FRAMES)
+        long, value_name = "COUNT", help_heading = HEADING,
+        value_parser = |text: &str| whole::<u32>(text, 2, MOST_FRAMES)
     )]
     pub frames: Option<u32>,
     /// Frames a second of these, a number or a fraction such as 30000/1001 [default: 30]
-    #[arg(long, value_name = "RATE", help_heading = HEADING, requires = "frames")]
+    #[arg(long, value_name = "RATE", help_heading = HEADING)]
     pub fps: Option<Rate>,
     /// Standard error of the truth: rays are added until it is below, root mean square over the pixels that see a surface
     #[arg(long, value_name = "ERROR", help_heading = HEADING, default_value_t = 0.002, value_parser = error)]
     pub truth_error: f64,
     /// Rays a pixel after which the truth has to do
     #[arg(
-        long, value_name = "N", help_heading = HEADING, default_value_t = 16_384,
+        long, value_name = "RAYS", help_heading = HEADING, default_value_t = 16_384,
         value_parser = |text: &str| whole::<u32>(text, 1024, 1 << 20)
     )]
     pub truth_spp: u32,

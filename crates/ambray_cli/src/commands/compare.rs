@@ -141,6 +141,9 @@ fn check_settings(args: &CompareArgs, settings: &Settings) -> anyhow::Result<()>
     if settings.temporal != plain.temporal {
         bail!("--temporal {} is not allowed here: --frames compares with it and without", settings.temporal);
     }
+    if args.fps.is_some() && args.frames.is_none() {
+        bail!("--fps is not allowed without --frames: it is about sequences");
+    }
     if args.paper
         && let Some(name) = paper::chosen(settings).first()
     {

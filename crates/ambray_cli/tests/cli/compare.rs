@@ -79,6 +79,7 @@ fn what_cannot_be_compared_is_told_in_a_line() {
     let bench = Bench::new();
     bench.run(&["compare", "scene.obj", "--frames=3"]).fails(&["--frames is not allowed", "no animation"]);
     bench.run(&["compare", "--method=gtao"]).fails(&["--method is not allowed", "--methods"]);
+    bench.run(&["compare", "--fps=24"]).fails(&["--fps is not allowed without --frames"]);
     bench.run(&["compare", "--sampling=same"]).fails(&["--sampling same is not allowed"]);
     bench.run(&["compare", "--temporal=on"]).fails(&["--temporal on is not allowed", "--frames"]);
     bench.run(&["compare", "--paper", "--thin=sheet"]).fails(&["--thin is not allowed with --paper"]);

@@ -50,6 +50,8 @@ fn samples(arg: &clap::Arg) -> Vec<String> {
         "LOW,HIGH" => "0.5,1",
         "PLANES" => "depth,all",
         "A..B" => "0..9",
+        "COUNT" => "24",
+        "RAYS" => "4096",
         _ => "1",
     };
     vec![sample.to_owned()]
