@@ -1,6 +1,6 @@
 //! What a test or a script needs to know and to do, besides keys and the mouse.
 
-use ambray::settings::SetError;
+use ambray::settings::{SetError, Settings, Temporal};
 
 use super::{App, Severity};
 use crate::model::{Resolution, Side};
@@ -24,9 +24,10 @@ impl App {
         }
         let wanted = self.sent.as_ref().and_then(|order| order.sides[i].as_ref());
         let Some((wanted, rendered)) = wanted.zip(self.shown.sides[i].as_ref()) else { return false };
-        // Frames that are accumulated count on.
-        let is_same =
-            ambray::settings::Settings { frame: wanted.frame, ..rendered.settings.clone() } == *wanted;
+        // Frames that are accumulated count on; others are those that were asked for.
+        let accumulates = wanted.temporal == Temporal::On;
+        let frame = if accumulates { wanted.frame } else { rendered.settings.frame };
+        let is_same = Settings { frame, ..rendered.settings.clone() } == *wanted;
         is_same && rendered.level.is_final && rendered.aov == self.model.aov && !self.shown.is_stale[i]
     }
 
