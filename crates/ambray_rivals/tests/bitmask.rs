@@ -6,12 +6,12 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use ambray_core::{
     camera::Projection,
-    settings::{Auto, ScreenQuality, Settings},
+    settings::{Auto, Method, ScreenQuality, Settings},
 };
 use ambray_rivals::{Bitmask, Gtao, Screen, SliceSampling};
 use common_gtao::{
-    Shape, camera, check_golden, cuboid, free, golden_screen, mean_around, openness_by_rays, pixel_of, plane,
-    screen, sphere, with_one_and_two_threads,
+    Shape, ball, camera, check_golden, cuboid, free, golden_screen, mean_around, openness_by_rays, pixel_of,
+    plane, screen, with_one_and_two_threads,
 };
 use glam::{DVec3, dvec3};
 
@@ -163,28 +163,9 @@ fn an_open_plane_is_open() {
     }
 }
 
-/// A ball over a floor, seen obliquely.
-fn ball(settings: &Settings) -> Screen {
-    let projection = Projection::Perspective { vertical_fov: 0.9 };
-    let camera = camera(dvec3(0.0, 2.0, 4.0), dvec3(0.0, 0.3, 0.0), projection, (97, 65));
-    let shapes = [plane(DVec3::ZERO, DVec3::Y, |p| p.length() < 6.0), sphere(dvec3(0.0, 0.7, 0.0), 0.7)];
-    screen(camera, &shapes, 1.0, settings)
-}
-
 #[test]
 fn every_quality_has_the_same_mean() {
-    let screen = ball(&Settings::default());
-    let mean = |screen_quality| {
-        let bitmask = Bitmask::of(&Settings { screen_quality, ..Settings::default() });
-        let values = bitmask.estimate(&screen, &free()).unwrap();
-        let values = bitmask.filter(&screen, &values, &free()).unwrap();
-        values.iter().sum::<f32>() / values.len() as f32
-    };
-    let ultra = mean(ScreenQuality::Ultra);
-    for screen_quality in ScreenQuality::ALL {
-        let mean = mean(*screen_quality);
-        assert!((mean - ultra).abs() < 0.03, "{mean} with {screen_quality}, {ultra} with ultra");
-    }
+    common_gtao::every_quality_has_the_same_mean(Method::Bitmask, 0.03);
 }
 
 #[test]

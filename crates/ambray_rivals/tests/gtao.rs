@@ -4,12 +4,12 @@ mod common_gtao;
 
 use ambray_core::{
     camera::Projection,
-    settings::{ScreenQuality, Settings},
+    settings::{Method, ScreenQuality, Settings},
 };
 use ambray_rivals::{Gtao, Screen, SliceSampling};
 use common_gtao::{
-    Shape, camera, check_golden, cuboid, first_hit, free, golden_screen, mean_around, openness_by_rays,
-    pixel_of, plane, screen, sphere, with_one_and_two_threads,
+    PERSPECTIVE, Shape, ball, camera, check_golden, cuboid, first_hit, free, golden_screen, mean_around,
+    openness_by_rays, pixel_of, plane, screen, sphere, with_one_and_two_threads,
 };
 use glam::{DVec3, dvec3};
 
@@ -41,8 +41,6 @@ fn filter(gtao: &Gtao, screen: &Screen, raw: &[f32]) -> Vec<f32> {
 fn floor() -> Shape {
     plane(DVec3::ZERO, DVec3::Y, |_| true)
 }
-
-const PERSPECTIVE: Projection = Projection::Perspective { vertical_fov: 0.9 };
 
 #[test]
 fn an_open_plane_is_open() {
@@ -187,26 +185,9 @@ fn what_is_outside_the_picture_or_hidden_does_not_block() {
     assert!(open - closed > 0.05, "{open} and {closed} by rays");
 }
 
-/// A ball on a floor, seen obliquely.
-fn ball(settings: &Settings) -> Screen {
-    let camera = camera(dvec3(0.0, 2.0, 4.0), dvec3(0.0, 0.3, 0.0), PERSPECTIVE, (97, 65));
-    let shapes = [plane(DVec3::ZERO, DVec3::Y, |p| p.length() < 6.0), sphere(dvec3(0.0, 0.7, 0.0), 0.7)];
-    screen(camera, &shapes, 1.0, settings)
-}
-
 #[test]
 fn every_quality_has_the_same_mean() {
-    let screen = ball(&Settings::default());
-    let mean = |screen_quality| {
-        let gtao = quality(screen_quality);
-        let values = filter(&gtao, &screen, &estimate(&gtao, &screen));
-        values.iter().sum::<f32>() / values.len() as f32
-    };
-    let ultra = mean(ScreenQuality::Ultra);
-    for screen_quality in ScreenQuality::ALL {
-        let mean = mean(*screen_quality);
-        assert!((mean - ultra).abs() < 0.02, "{mean} with {screen_quality}, {ultra} with ultra");
-    }
+    common_gtao::every_quality_has_the_same_mean(Method::Gtao, 0.02);
 }
 
 #[test]

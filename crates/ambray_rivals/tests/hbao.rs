@@ -5,8 +5,8 @@ mod common;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_6, PI, TAU};
 
 use ambray_core::{
-    control::{Cancelled, Control},
-    settings::{ScreenQuality, Settings},
+    control::Control,
+    settings::{Method, Settings},
 };
 use ambray_rivals::{Hbao, Screen};
 use common::{Scene, Seen, Shape, mean, parallel, perspective, see, truth};
@@ -140,26 +140,12 @@ fn a_corner_seen_obliquely_is_what_the_equation_says() {
 
 #[test]
 fn any_quality_has_the_same_mean() {
-    let ball = Shape::Sphere(DVec3::new(0.0, 0.5, 0.0), 0.5);
-    let scene = Scene(vec![Shape::level(0.0, -50.0, 50.0), ball, Shape::upright(-1.0, 0.0, 50.0)]);
-    let camera = perspective(DVec3::new(2.0, 1.5, 1.0), DVec3::new(0.0, 0.3, 0.0), (96, 64));
-    let of = |screen_quality| {
-        let settings = Settings { screen_quality, ..Settings::default() };
-        let seen = see(&scene, camera, 0.8, &settings);
-        mean(raw(&Hbao::of(&settings), &seen.screen))
-    };
-    let best = of(ScreenQuality::Ultra);
-    assert!(best < 0.97, "{best}");
-    for quality in [ScreenQuality::Low, ScreenQuality::Medium, ScreenQuality::High] {
-        assert!((of(quality) - best).abs() < 0.01, "{quality}: {} for {best}", of(quality));
-    }
+    common::any_quality_has_the_same_mean(Method::Hbao, 0.01);
 }
 
 #[test]
 fn what_is_outside_the_picture_is_not_seen() {
-    let scene = Scene(vec![Shape::level(0.0, 0.0, 50.0), Shape::upright(0.0, 0.0, 50.0)]);
-    // From 0.1 to 1.7 of the floor beside the wall.
-    let camera = parallel(DVec3::new(0.9, 5.0, 0.0), DOWN, (32, 20), 20.0);
+    let (scene, camera) = common::beside_a_wall_that_is_not_seen();
     let seen = see(&scene, camera, 1.0, &truth());
     assert!(raw(&default(), &seen.screen).iter().all(|o| *o == 1.0));
     let truth = columns(&seen, &common::traced(&scene, &seen, &truth()));
@@ -214,25 +200,10 @@ fn the_filter_keeps_constants_and_stops_at_edges_of_depth() {
 
 #[test]
 fn threads_change_nothing_and_work_can_be_stopped() {
-    let scene = Scene(vec![Shape::level(0.0, -50.0, 50.0), Shape::Sphere(DVec3::new(0.0, 0.5, 0.0), 0.5)]);
-    let camera = perspective(DVec3::new(2.0, 1.5, 1.0), DVec3::ZERO, (48, 32));
-    let seen = see(&scene, camera, 0.8, &Settings::default());
-    common::same_bits_for_any_threads(|control| {
-        let raw = default().estimate(&seen.screen, control).unwrap();
-        default().filter(&seen.screen, &raw, control).unwrap()
-    });
-    let cancel = true.into();
-    let control = Control { cancel: &cancel, ..Control::default() };
-    assert_eq!(default().estimate(&seen.screen, &control), Err(Cancelled));
+    common::threads_change_nothing_and_work_can_be_stopped(&default());
 }
 
 #[test]
 fn where_nothing_is_seen_it_is_open() {
-    let scene = Scene(vec![Shape::Sphere(DVec3::ZERO, 0.5)]);
-    let camera = parallel(DVec3::new(0.0, 5.0, 0.0), DOWN, (24, 24), 12.0);
-    let seen = see(&scene, camera, 0.5, &Settings::default());
-    let values = raw(&default(), &seen.screen);
-    let filtered = default().filter(&seen.screen, &values, &Control::default()).unwrap();
-    assert!(values.iter().chain(&filtered).all(|o| (0.0..=1.0).contains(o)));
-    assert_eq!((values[0], filtered[0]), (1.0, 1.0));
+    common::where_nothing_is_seen_it_is_open(&default());
 }

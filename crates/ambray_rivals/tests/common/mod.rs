@@ -3,17 +3,17 @@
 
 use ambray_core::{
     camera::{Camera, Projection},
-    control::Control,
+    control::{Cancelled, Control},
     frame::GBufferPixel,
     gather::{GatherParams, GatherScratch, Gathered, ShadedPoint, gather},
     offset::RayOffset,
     openness::Openness,
     sampling::{PixelKey, SampleSets},
-    settings::{Sampling, Sequence, Settings},
+    settings::{Method, Sampling, ScreenQuality, Sequence, Settings},
     trace::{Diffuse, Hit, Motion, Ray, Trace, World},
     view::View,
 };
-use ambray_rivals::Screen;
+use ambray_rivals::{Rival, Screen, rival};
 use glam::{DVec3, Vec3};
 
 /// A surface, two-sided.
@@ -215,4 +215,66 @@ pub fn same_bits_for_any_threads(work: impl Fn(&Control<'_>) -> Vec<f32> + Sync)
         values.into_iter().map(f32::to_bits).collect::<Vec<_>>()
     };
     assert_eq!(run(1), run(2));
+}
+
+/// A ball before a wall.
+pub fn ball_before_a_wall() -> (Scene, Camera) {
+    let ball = Shape::Sphere(DVec3::new(0.0, 0.5, 0.0), 0.5);
+    let scene = Scene(vec![Shape::level(0.0, -50.0, 50.0), ball, Shape::upright(-1.0, 0.0, 50.0)]);
+    (scene, perspective(DVec3::new(2.0, 1.5, 1.0), DVec3::new(0.0, 0.3, 0.0), (96, 64)))
+}
+
+/// A ball on a floor.
+pub fn ball_on_a_floor() -> (Scene, Camera) {
+    let ball = Shape::Sphere(DVec3::new(0.0, 0.5, 0.0), 0.5);
+    let scene = Scene(vec![Shape::level(0.0, -50.0, 50.0), ball]);
+    (scene, perspective(DVec3::new(2.0, 1.5, 1.0), DVec3::ZERO, (48, 32)))
+}
+
+/// A floor from 0.1 to 1.7 beside a wall that is outside the picture.
+pub fn beside_a_wall_that_is_not_seen() -> (Scene, Camera) {
+    let scene = Scene(vec![Shape::level(0.0, 0.0, 50.0), Shape::upright(0.0, 0.0, 50.0)]);
+    (scene, parallel(DVec3::new(0.9, 5.0, 0.0), DVec3::NEG_Y, (32, 20), 20.0))
+}
+
+/// The mean of `method` is that of ultra quality up to `bound`, for every quality.
+#[track_caller]
+pub fn any_quality_has_the_same_mean(method: Method, bound: f64) {
+    let (scene, camera) = ball_before_a_wall();
+    let of = |screen_quality| {
+        let settings = Settings { method, screen_quality, ..Settings::default() };
+        let screen = see(&scene, camera, 0.8, &settings).screen;
+        mean(rival(&settings).unwrap().estimate(&screen, &Control::default()).unwrap())
+    };
+    let best = of(ScreenQuality::Ultra);
+    assert!(best < 0.97, "{best}");
+    for quality in [ScreenQuality::Low, ScreenQuality::Medium, ScreenQuality::High] {
+        assert!((of(quality) - best).abs() < bound, "{quality}: {} for {best}", of(quality));
+    }
+}
+
+/// One and two threads give the same bits, and a cancelled estimate ends.
+#[track_caller]
+pub fn threads_change_nothing_and_work_can_be_stopped(rival: &dyn Rival) {
+    let (scene, camera) = ball_on_a_floor();
+    let screen = see(&scene, camera, 0.8, &Settings::default()).screen;
+    same_bits_for_any_threads(|control| {
+        let raw = rival.estimate(&screen, control).unwrap();
+        rival.filter(&screen, &raw, control).unwrap()
+    });
+    let cancel = true.into();
+    let control = Control { cancel: &cancel, ..Control::default() };
+    assert_eq!(rival.estimate(&screen, &control), Err(Cancelled));
+}
+
+/// Values are in [0, 1], and 1 where nothing is seen, before and after the filter.
+#[track_caller]
+pub fn where_nothing_is_seen_it_is_open(rival: &dyn Rival) {
+    let scene = Scene(vec![Shape::Sphere(DVec3::ZERO, 0.5)]);
+    let camera = parallel(DVec3::new(0.0, 5.0, 0.0), DVec3::NEG_Y, (24, 24), 12.0);
+    let screen = see(&scene, camera, 0.5, &Settings::default()).screen;
+    let values = rival.estimate(&screen, &Control::default()).unwrap();
+    let filtered = rival.filter(&screen, &values, &Control::default()).unwrap();
+    assert!(values.iter().chain(&filtered).all(|o| (0.0..=1.0).contains(o)));
+    assert_eq!((values[0], filtered[0]), (1.0, 1.0));
 }

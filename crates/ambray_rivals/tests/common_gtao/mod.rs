@@ -8,11 +8,11 @@ use ambray_core::{
     frame::GBufferPixel,
     offset::RayOffset,
     openness::Openness,
-    settings::Settings,
+    settings::{Method, ScreenQuality, Settings},
     view::View,
 };
-use ambray_rivals::Screen;
-use glam::{DVec3, Vec3};
+use ambray_rivals::{Screen, rival};
+use glam::{DVec3, Vec3, dvec3};
 
 /// A surface that a ray from the first along the unit second vector may meet: distance and unit normal, of either sign.
 pub type Shape = Box<dyn Fn(DVec3, DVec3) -> Option<(f64, DVec3)>>;
@@ -162,4 +162,31 @@ pub fn with_one_and_two_threads<T: Send>(work: impl Fn() -> T + Sync) -> [T; 2] 
 /// No limits.
 pub fn free() -> Control<'static> {
     Control::default()
+}
+
+/// A perspective view.
+pub const PERSPECTIVE: Projection = Projection::Perspective { vertical_fov: 0.9 };
+
+/// A ball on a floor, seen obliquely.
+pub fn ball(settings: &Settings) -> Screen {
+    let camera = camera(dvec3(0.0, 2.0, 4.0), dvec3(0.0, 0.3, 0.0), PERSPECTIVE, (97, 65));
+    let shapes = [plane(DVec3::ZERO, DVec3::Y, |p| p.length() < 6.0), sphere(dvec3(0.0, 0.7, 0.0), 0.7)];
+    screen(camera, &shapes, 1.0, settings)
+}
+
+/// The mean of `method` after its filter is that of ultra quality up to `bound`, for every quality.
+#[track_caller]
+pub fn every_quality_has_the_same_mean(method: Method, bound: f32) {
+    let screen = ball(&Settings::default());
+    let mean = |screen_quality| {
+        let rival = rival(&Settings { method, screen_quality, ..Settings::default() }).unwrap();
+        let values = rival.estimate(&screen, &free()).unwrap();
+        let values = rival.filter(&screen, &values, &free()).unwrap();
+        values.iter().sum::<f32>() / values.len() as f32
+    };
+    let ultra = mean(ScreenQuality::Ultra);
+    for screen_quality in ScreenQuality::ALL {
+        let mean = mean(*screen_quality);
+        assert!((mean - ultra).abs() < bound, "{mean} with {screen_quality}, {ultra} with ultra");
+    }
 }
