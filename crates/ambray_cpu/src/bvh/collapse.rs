@@ -1,6 +1,11 @@
 //! From a binary tree to a wide one of least surface-area cost, by dynamic programming (Ylitie et al. 2017, §3.1).
 
-use super::build::{Binary, BinaryNode};
+use std::collections::{BinaryHeap, HashMap};
+
+use rayon::prelude::*;
+
+use super::binary::Binary;
+use super::forest::{Choices, Table};
 use super::layout::{Child, Node};
 
 /// What steps of the traversal cost, relative to each other.
@@ -19,59 +24,43 @@ impl Costs {
     pub(crate) const INSTANCES: Self = Self { node: 1.0, leaf: 0.0, primitive: 4.0 };
 }
 
+/// Subtrees that threads take one at a time; enough that none of them is a bottleneck.
+const SUBTREES: usize = 512;
+
 /// Result of [`collapse`].
 #[derive(Debug, Default)]
-pub(crate) struct Wide<const W: usize> {
-    pub(crate) nodes: Vec<Node<W>>,
-    pub(crate) depth: usize,
+pub(super) struct Wide<const W: usize> {
+    /// In the order of a depth-first walk. Children that are leaves are indices into `leaves`.
+    pub(super) nodes: Vec<Node<W>>,
+    /// Binary nodes that became leaves, in the same order.
+    pub(super) leaves: Vec<u32>,
+    pub(super) depth: usize,
     /// Nodes and leaves counted as 1, weighed by surface area relative to the root.
-    pub(crate) sah_cost: f32,
+    pub(super) sah_cost: f32,
 }
 
-/// The forest of the `i` roots that [`Table::cost`] speaks of costs no less than the one of `i - 1`.
-const SAME: u8 = 0x80;
-
-/// Least costs of a binary node's subtree, for 1 to `W` roots at entries 0 to `W - 1`.
-#[derive(Clone, Copy)]
-struct Table<const W: usize> {
-    cost: [f32; W],
-    /// How many roots the left child provides, for forests of 2 to `W` roots; with [`SAME`] fewer roots are no worse.
-    left: [u8; W],
-    /// Whether a single root is a leaf.
-    leaf: bool,
-}
-
-/// Collapses `tree` to nodes of up to `W` children and leaves of up to `fat` primitives. `leaf` stores the primitives of
-/// a leaf and returns the reference to it; it is called in the order of a depth-first walk.
-pub(crate) fn collapse<const W: usize>(
-    tree: &Binary,
-    costs: Costs,
-    fat: u32,
-    leaf: &mut dyn FnMut(&[u32]) -> Child,
-) -> Wide<W> {
-    let Some(root) = tree.nodes.len().checked_sub(1) else {
+/// Collapses `tree` to nodes of up to `W` children and leaves of up to `fat` primitives.
+pub(super) fn collapse<const W: usize>(tree: &Binary, costs: Costs, fat: u32) -> Wide<W> {
+    if tree.links.is_empty() {
         return Wide::default();
-    };
-    let scale = 1.0 / tree.nodes[root].bounds.half_area().max(f64::MIN_POSITIVE);
-    let area = |node: &BinaryNode| (node.bounds.half_area() * scale) as f32;
-    let tables = tables::<W>(tree, costs, fat, &area);
-
+    }
+    let choices = choices::<W>(tree, costs, fat);
+    let scale = 1.0 / tree.bounds[0].half_area().max(f32::MIN_POSITIVE);
     let mut wide = Wide::default();
-    let mut primitives = Vec::new();
+    let mut children = Vec::with_capacity(W);
     // Nodes to write: binary node, where the reference to it goes (node and slot), and depth.
-    let mut pending = vec![(root, None::<(usize, usize)>, 1_usize)];
+    let mut pending = vec![(0, None::<(usize, usize)>, 1_usize)];
     while let Some((index, parent, depth)) = pending.pop() {
-        let binary = &tree.nodes[index];
         wide.depth = wide.depth.max(depth);
-        wide.sah_cost += area(binary);
-        let child = if tables[index].leaf && parent.is_some() {
-            gather_primitives(tree, index, &mut primitives);
-            leaf(&primitives)
+        wide.sah_cost += tree.bounds[index].half_area() * scale;
+        let child = if choices.of(index).is_leaf() && parent.is_some() {
+            wide.leaves.push(index as u32);
+            Child::leaf(wide.leaves.len() - 1)
         } else {
+            gather_children::<W>(tree, &choices, index, &mut children);
             let mut node = Node::EMPTY;
-            let slots = gather_children(tree, &tables, index);
-            for (slot, &child) in slots.iter().enumerate() {
-                let bounds = tree.nodes[child].bounds;
+            for (slot, &child) in children.iter().enumerate() {
+                let bounds = tree.bounds[child];
                 for axis in 0..3 {
                     node.planes[axis][slot] = bounds.lo[axis];
                     node.planes[axis + 3][slot] = bounds.hi[axis];
@@ -79,7 +68,7 @@ pub(crate) fn collapse<const W: usize>(
             }
             wide.nodes.push(node);
             let written = wide.nodes.len() - 1;
-            let below = slots.iter().enumerate().rev();
+            let below = children.iter().enumerate().rev();
             pending.extend(below.map(|(slot, &child)| (child, Some((written, slot)), depth + 1)));
             Child::node(written)
         };
@@ -90,87 +79,94 @@ pub(crate) fn collapse<const W: usize>(
     wide
 }
 
-#[allow(clippy::needless_range_loop, reason = "several tables are indexed by the number of roots")]
-fn tables<const W: usize>(
+/// Binary nodes that become the children of the wide node at `index`.
+fn gather_children<const W: usize>(
     tree: &Binary,
+    choices: &Choices,
+    index: usize,
+    children: &mut Vec<usize>,
+) {
+    children.clear();
+    if choices.of(index).is_leaf() {
+        children.push(index); // the root of a tree that is a single leaf
+        return;
+    }
+    let split = |index: usize, roots: usize, left: usize| {
+        let [l, r] = tree.children(index);
+        [(r, roots - left), (l, left)]
+    };
+    let mut pending = Vec::with_capacity(W);
+    let (roots, left) = choices.of(index).forest(W);
+    pending.extend(split(index, roots, left));
+    while let Some((index, roots)) = pending.pop() {
+        match choices.of(index).forest(roots) {
+            (1, _) => children.push(index),
+            (roots, left) => pending.extend(split(index, roots, left)),
+        }
+    }
+}
+
+/// What the dynamic programming chooses at each node: subtrees first, several at a time, then what is above them.
+fn choices<const W: usize>(tree: &Binary, costs: Costs, fat: u32) -> Choices {
+    let choices = Choices::for_nodes(tree.links.len());
+    let (trunk, subtrees) = split(tree);
+    let table = |&root: &usize| (root, subtree::<W>(tree, root, costs, fat, &choices));
+    let mut tables: HashMap<_, _> = subtrees.par_iter().map(table).collect();
+    for node in trunk.into_iter().rev() {
+        let below = tree.children(node).map(|child| tables.remove(&child).expect("children come first"));
+        let [left, right] = &below;
+        let (table, choice) = Table::above([left, right], tree.bounds[node].half_area(), costs, fat);
+        choices.set(node, choice);
+        tables.insert(node, table);
+    }
+    choices
+}
+
+/// Nodes near the root, each before its children, and the subtrees below them. Those with the largest boxes are taken apart.
+fn split(tree: &Binary) -> (Vec<usize>, Vec<usize>) {
+    let entry = |node: usize| (tree.bounds[node].half_area().to_bits(), node);
+    let mut subtrees = BinaryHeap::from([entry(0)]);
+    let (mut trunk, mut leaves) = (Vec::new(), Vec::new());
+    while subtrees.len() + leaves.len() < SUBTREES
+        && let Some((_, node)) = subtrees.pop()
+    {
+        if tree.links[node].is_leaf() {
+            leaves.push(node);
+        } else {
+            trunk.push(node);
+            subtrees.extend(tree.children(node).map(entry));
+        }
+    }
+    leaves.extend(subtrees.into_iter().map(|(_, node)| node));
+    (trunk, leaves)
+}
+
+/// The table of a subtree, whose choices are put among those of all. Nothing recurses: trees of strange meshes are deep.
+fn subtree<const W: usize>(
+    tree: &Binary,
+    root: usize,
     costs: Costs,
     fat: u32,
-    area: &dyn Fn(&BinaryNode) -> f32,
-) -> Vec<Table<W>> {
-    let mut tables: Vec<Table<W>> = Vec::with_capacity(tree.nodes.len());
-    for node in &tree.nodes {
-        let as_leaf = if node.leaves <= fat {
-            area(node) * (costs.leaf + costs.primitive * node.leaves as f32)
+    choices: &Choices,
+) -> Table<W> {
+    let mut finished: Vec<Table<W>> = Vec::new();
+    // A node is visited again, after its children, with `expanded` set.
+    let mut pending = vec![(root, false)];
+    while let Some((node, expanded)) = pending.pop() {
+        let area = tree.bounds[node].half_area();
+        let (table, choice) = if tree.links[node].is_leaf() {
+            Table::of_primitive(area, costs)
+        } else if expanded {
+            let right = finished.pop().expect("both children are finished before their parent");
+            let left = finished.pop().expect("both children are finished before their parent");
+            Table::above([&left, &right], area, costs, fat)
         } else {
-            f32::INFINITY
+            let [left, right] = tree.children(node);
+            pending.extend([(node, true), (right, false), (left, false)]);
+            continue;
         };
-        let mut table = Table { cost: [as_leaf; W], left: [SAME; W], leaf: true };
-        if !node.is_leaf() {
-            let [l, r] = node.children.map(|child| &tables[child as usize]);
-            // The cheapest forest of each size that splits between the children.
-            let mut split = [f32::INFINITY; W];
-            for roots in 1..W {
-                for left in 0..roots {
-                    let cost = l.cost[left] + r.cost[roots - 1 - left];
-                    if cost < split[roots] {
-                        split[roots] = cost;
-                        table.left[roots] = left as u8 + 1;
-                    }
-                }
-            }
-            let as_node = split[W - 1] + area(node) * costs.node;
-            table.leaf = as_leaf <= as_node;
-            table.cost[0] = as_leaf.min(as_node);
-            for roots in 1..W {
-                if split[roots] < table.cost[roots - 1] {
-                    table.cost[roots] = split[roots];
-                } else {
-                    table.cost[roots] = table.cost[roots - 1];
-                    table.left[roots] |= SAME;
-                }
-            }
-        }
-        tables.push(table);
+        choices.set(node, choice);
+        finished.push(table);
     }
-    tables
-}
-
-/// Binary nodes that become the children of the wide node at `index`.
-fn gather_children<const W: usize>(tree: &Binary, tables: &[Table<W>], index: usize) -> Vec<usize> {
-    let mut children = Vec::with_capacity(W);
-    if tree.nodes[index].is_leaf() {
-        return vec![index]; // a root with a single primitive
-    }
-    let mut pending = Vec::with_capacity(W);
-    let split = |pending: &mut Vec<(usize, usize)>, index: usize, roots: usize, left: usize| {
-        let [l, r] = tree.nodes[index].children;
-        pending.extend([(r as usize, roots - left), (l as usize, left)]);
-    };
-    split(&mut pending, index, W, usize::from(tables[index].left[W - 1] & !SAME));
-    while let Some((index, mut roots)) = pending.pop() {
-        let table = &tables[index];
-        while roots > 1 && table.left[roots - 1] & SAME != 0 {
-            roots -= 1;
-        }
-        if roots == 1 {
-            children.push(index);
-        } else {
-            split(&mut pending, index, roots, usize::from(table.left[roots - 1]));
-        }
-    }
-    children
-}
-
-/// Primitives below the binary node `index`.
-fn gather_primitives(tree: &Binary, index: usize, primitives: &mut Vec<u32>) {
-    primitives.clear();
-    let mut pending = vec![index];
-    while let Some(index) = pending.pop() {
-        let node = &tree.nodes[index];
-        if node.is_leaf() {
-            primitives.push(node.children[1]);
-        } else {
-            pending.extend(node.children.iter().rev().map(|&child| child as usize));
-        }
-    }
+    finished.pop().expect("a subtree has a root")
 }

@@ -1,7 +1,12 @@
 //! Trees: how they are built, collapsed and laid out.
 
+mod binary;
 pub(crate) mod build;
 mod collapse;
+mod forest;
 pub(crate) mod layout;
-mod places;
+mod ploc;
 pub(crate) mod refit;
+mod reinsert;
+#[cfg(test)]
+mod tests;
