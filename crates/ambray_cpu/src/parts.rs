@@ -2,6 +2,7 @@
 
 use ambray_scene::{Instance, Motion, Scene};
 use glam::Affine3A;
+use rayon::prelude::*;
 
 use crate::AlphaTest;
 use crate::bvh::build::{Triangle, is_hittable};
@@ -101,6 +102,7 @@ impl Parts {
             dropped: 0,
             baked_instances: 0,
         };
+        let mut pieces = Pieces::default();
         let mut trees = vec![None; scene.meshes.len()];
         for mesh in (0_u32..).take(scene.meshes.len()).filter(|&mesh| motions.deforms[mesh as usize]) {
             trees[mesh as usize] = Some(parts.deforming.len() as u32);
@@ -111,42 +113,79 @@ impl Parts {
             let motion = motions.of_instance(instance);
             if motion == Motion::Static && !is_shared[mesh] {
                 parts.baked_instances += usize::from(uses[mesh] > 1);
-                let baked = parts.triangles(scene, instance.mesh, index, &instance.world_from_object, alpha);
-                parts.baked.extend(baked);
+                pieces.add(scene, instance.mesh, index, instance.world_from_object, alpha);
                 continue;
             }
             let tree = match trees[mesh] {
                 Some(tree) => tree,
                 None => {
-                    let triangles = parts.triangles(scene, instance.mesh, 0, &Affine3A::IDENTITY, alpha);
-                    parts.rigid.push(triangles);
+                    let mut mesh_alone = Pieces::default();
+                    mesh_alone.add(scene, instance.mesh, 0, Affine3A::IDENTITY, alpha);
+                    parts.rigid.push(mesh_alone.triangles(scene, &mut parts.dropped));
                     *trees[mesh].insert((parts.deforming.len() + parts.rigid.len()) as u32 - 1)
                 }
             };
             parts.placements.push(Placement { tree, instance: index, moves: motion != Motion::Static });
         }
+        parts.baked = pieces.triangles(scene, &mut parts.dropped);
         parts
     }
+}
 
-    fn triangles(
+/// Most triangles of a piece.
+const PIECE: usize = 8192;
+
+/// Some triangles of an instance.
+struct Piece {
+    mesh: u32,
+    /// What its triangles say they belong to.
+    instance: u32,
+    tree_from_object: Affine3A,
+    masked: bool,
+    triangles: std::ops::Range<usize>,
+}
+
+/// Instances in pieces, so that threads have equal shares of large meshes too.
+#[derive(Default)]
+struct Pieces(Vec<Piece>);
+
+impl Pieces {
+    fn add(
         &mut self,
         scene: &Scene,
         mesh: u32,
         instance: u32,
-        to_tree: &Affine3A,
+        tree_from_object: Affine3A,
         alpha: &dyn AlphaTest,
-    ) -> Vec<Triangle> {
+    ) {
         let masked = !alpha.is_opaque(mesh);
+        let count = scene.meshes[mesh as usize].triangles.len();
+        self.0.extend((0..count).step_by(PIECE).map(|start| {
+            let triangles = start..(start + PIECE).min(count);
+            Piece { mesh, instance, tree_from_object, masked, triangles }
+        }));
+    }
+
+    /// All triangles that rays can hit, in the order of the pieces; the others count as dropped.
+    fn triangles(self, scene: &Scene, dropped: &mut usize) -> Vec<Triangle> {
+        let all: usize = self.0.iter().map(|piece| piece.triangles.len()).sum();
+        let hittable: Vec<_> = self.0.into_par_iter().flat_map_iter(|piece| piece.hittable(scene)).collect();
+        *dropped += all - hittable.len();
+        hittable
+    }
+}
+
+impl Piece {
+    fn hittable(self, scene: &Scene) -> impl Iterator<Item = Triangle> {
+        let Self { mesh, instance, tree_from_object, masked, triangles } = self;
         let mesh = &scene.meshes[mesh as usize];
-        let positions: Vec<_> = mesh.positions.iter().map(|&p| to_tree.transform_point3(p)).collect();
-        let all = (0_u32..).zip(&mesh.triangles).map(|(triangle, corners)| Triangle {
-            corners: corners.map(|i| positions[i as usize]),
+        let all = triangles.map(move |triangle| Triangle {
+            corners: mesh.triangles[triangle]
+                .map(|i| tree_from_object.transform_point3(mesh.positions[i as usize])),
             instance,
-            triangle,
+            triangle: triangle as u32,
             masked,
         });
-        let hittable: Vec<_> = all.filter(|triangle| is_hittable(&triangle.corners)).collect();
-        self.dropped += mesh.triangles.len() - hittable.len();
-        hittable
+        all.filter(|triangle| is_hittable(&triangle.corners))
     }
 }

@@ -15,6 +15,7 @@ pub(super) struct Aabb {
 impl Aabb {
     pub(super) const EMPTY: Self = Self { lo: Vec3A::INFINITY, hi: Vec3A::NEG_INFINITY };
 
+    #[inline]
     pub(super) fn of_points(points: &[Vec3; 3]) -> Self {
         let [a, b, c] = points.map(Vec3A::from);
         Self { lo: a.min(b).min(c), hi: a.max(b).max(c) }

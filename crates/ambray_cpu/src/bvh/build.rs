@@ -28,12 +28,34 @@ pub(crate) struct Triangle {
 
 /// Whether rays can hit a triangle: all corners within [`LARGEST`], and not of zero area (in f64; coincident or collinear
 /// corners).
-pub(crate) fn is_hittable(&[a, b, c]: &[Vec3; 3]) -> bool {
-    let area = || {
-        let (a, b, c) = (a.as_dvec3(), b.as_dvec3(), c.as_dvec3());
-        (b - a).cross(c - a).abs().max_element()
-    };
-    is_within(a) && is_within(b) && is_within(c) && area() > 0.0
+#[inline]
+pub(crate) fn is_hittable(corners: &[Vec3; 3]) -> bool {
+    corners.iter().all(|&corner| is_within(corner)) && (has_much_area(corners) || has_area(corners))
+}
+
+/// Whether a triangle's area is not 0, in f64.
+#[cold]
+pub(super) fn has_area(&[a, b, c]: &[Vec3; 3]) -> bool {
+    let (a, b, c) = (a.as_dvec3(), b.as_dvec3(), c.as_dvec3());
+    (b - a).cross(c - a).abs().max_element() > 0.0
+}
+
+/// Whether a triangle's area is so large that no rounding hides whether it is 0: a bound that most triangles pass, in f32.
+#[inline]
+pub(super) fn has_much_area(&[a, b, c]: &[Vec3; 3]) -> bool {
+    let (p, q) = (b - a, c - a);
+    let margin = |y: usize, z: usize| cross_margin(p[y] * q[z], p[z] * q[y]);
+    margin(1, 2) > 0.0 || margin(2, 0) > 0.0 || margin(0, 1) > 0.0
+}
+
+/// Above 0 if the difference of two products is not 0, whatever the rounding of the products' factors.
+///
+/// These are differences themselves, so each product is off by 3 half-ulps. What is left is more than 16 half-ulps of both, and too
+/// large for products to underflow.
+#[inline]
+pub(super) fn cross_margin(first: f32, second: f32) -> f32 {
+    const ROUNDING: f32 = 16.0 / 16_777_216.0;
+    (first - second).abs() - ((first.abs() + second.abs()) * ROUNDING + f32::MIN_POSITIVE)
 }
 
 /// Whether `p` is finite and within [`LARGEST`].
@@ -45,7 +67,7 @@ fn is_within(p: Vec3) -> bool {
 fn binary(boxes: Vec<Aabb>, quality: Quality) -> Binary {
     let (radius, share) = match quality {
         Quality::FastBuild => (6, 0.002),
-        Quality::Balanced => (14, 0.01),
+        Quality::Balanced => (8, 0.01),
         Quality::BestTrace => (24, 1.0),
     };
     let mut tree = ploc::build(boxes, radius);

@@ -17,12 +17,28 @@ pub(crate) struct Costs {
     pub(crate) leaf: f32,
     /// What each primitive of a leaf adds.
     pub(crate) primitive: f32,
+    /// What a node or leaf costs by being there, in the unit of the others for a box like that of the root, over the number of
+    /// primitives.
+    pub(crate) storage: f32,
 }
 
 impl Costs {
-    pub(crate) const TRIANGLES: Self = Self { node: 1.0, leaf: 0.9, primitive: 0.03 };
-    pub(crate) const INSTANCES: Self = Self { node: 1.0, leaf: 0.0, primitive: 4.0 };
+    pub(crate) const TRIANGLES: Self = Self { node: 1.0, leaf: 0.9, primitive: 0.03, storage: STORAGE };
+    pub(crate) const INSTANCES: Self = Self { node: 1.0, leaf: 0.0, primitive: 4.0, storage: 0.0 };
+
+    /// Of a leaf with a box of the given area.
+    pub(super) const fn of_leaf(&self, area: f32, primitives: u32) -> f32 {
+        area * (self.leaf + self.primitive * primitives as f32) + self.storage
+    }
+
+    /// Of a node with a box of the given area, without what is below.
+    pub(super) const fn of_node(&self, area: f32) -> f32 {
+        area * self.node + self.storage
+    }
 }
+
+/// See [`Costs::storage`].
+const STORAGE: f32 = 0.4;
 
 /// Subtrees that threads take one at a time; enough that none of them is a bottleneck.
 const SUBTREES: usize = 512;
@@ -44,7 +60,9 @@ pub(super) fn collapse<const W: usize>(tree: &Binary, costs: Costs, fat: u32) ->
     if tree.links.is_empty() {
         return Wide::default();
     }
-    let choices = choices::<W>(tree, costs, fat);
+    let primitives = tree.links.len() / 2 + 1;
+    let storage = costs.storage * tree.bounds[0].half_area() / primitives as f32;
+    let choices = choices::<W>(tree, Costs { storage, ..costs }, fat);
     let scale = 1.0 / tree.bounds[0].half_area().max(f32::MIN_POSITIVE);
     let mut wide = Wide::default();
     let mut children = Vec::with_capacity(W);
@@ -157,9 +175,12 @@ fn subtree<const W: usize>(
         let (table, choice) = if tree.links[node].is_leaf() {
             Table::of_primitive(area, costs)
         } else if expanded {
-            let right = finished.pop().expect("both children are finished before their parent");
-            let left = finished.pop().expect("both children are finished before their parent");
-            Table::above([&left, &right], area, costs, fat)
+            let [.., left, right] = &finished[..] else {
+                unreachable!("both children are finished before their parent");
+            };
+            let above = Table::above([left, right], area, costs, fat);
+            finished.truncate(finished.len() - 2);
+            above
         } else {
             let [left, right] = tree.children(node);
             pending.extend([(node, true), (right, false), (left, false)]);

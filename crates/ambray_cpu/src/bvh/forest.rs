@@ -19,7 +19,7 @@ impl<const W: usize> Table<W> {
     /// A single primitive in a box of the given area.
     pub(super) fn of_primitive(area: f32, costs: Costs) -> (Self, Choice) {
         let mut cost = [f32::INFINITY; W];
-        cost[0] = area * (costs.leaf + costs.primitive);
+        cost[0] = costs.of_leaf(area, 1);
         (Self { cost, roots: 1, primitives: 1 }, Choice::LEAF)
     }
 
@@ -28,37 +28,35 @@ impl<const W: usize> Table<W> {
         let primitives = left.primitives + right.primitives;
         let roots = (left.roots + right.roots).min(W as u32);
         let mut cost = [f32::INFINITY; W];
-        let mut choice = [0; W];
+        let mut of_left = [0_u8; W];
         // The cheapest forest of each size that splits between the children.
-        for of_left in 1..=(left.roots as usize).min(W - 1) {
-            for of_right in 1..=(right.roots as usize).min(W - of_left) {
-                let split = left.cost[of_left - 1] + right.cost[of_right - 1];
-                let all = of_left + of_right;
-                if split < cost[all - 1] {
-                    (cost[all - 1], choice[all - 1]) = (split, of_left);
+        for l in 0..(left.roots as usize).min(W - 1) {
+            let rights = (right.roots as usize).min(W - 1 - l);
+            let splits = cost[l + 1..].iter_mut().zip(&mut of_left[l + 1..]).zip(&right.cost[..rights]);
+            for ((cost, of_left), right) in splits {
+                let split = left.cost[l] + right;
+                if split < *cost {
+                    (*cost, *of_left) = (split, l as u8 + 1);
                 }
             }
         }
-        let as_leaf = if primitives <= fat {
-            area * (costs.leaf + costs.primitive * primitives as f32)
-        } else {
-            f32::INFINITY
-        };
+        let as_leaf = if primitives <= fat { costs.of_leaf(area, primitives) } else { f32::INFINITY };
         let last = roots as usize - 1;
-        let as_node = cost[last] + area * costs.node;
+        let as_node = cost[last] + costs.of_node(area);
         let is_leaf = as_leaf <= as_node;
         cost[0] = as_leaf.min(as_node);
-        choice[0] = usize::from(is_leaf);
+        let mut choice = Choice(u64::from(is_leaf));
         // A node has children even where they cost as much as itself: in boxes without area.
         let mut has_children = is_leaf;
-        for of_all in 1..=last {
-            if cost[of_all] < cost[of_all - 1] || (of_all == last && !has_children) {
+        for roots in 1..=last {
+            if cost[roots] < cost[roots - 1] || (roots == last && !has_children) {
                 has_children = true;
+                choice.0 |= u64::from(of_left[roots]) << (4 * roots);
             } else {
-                (cost[of_all], choice[of_all]) = (cost[of_all - 1], 0);
+                cost[roots] = cost[roots - 1];
             }
         }
-        (Self { cost, roots, primitives }, Choice::new(&choice))
+        (Self { cost, roots, primitives }, choice)
     }
 }
 
@@ -69,10 +67,6 @@ pub(super) struct Choice(u64);
 
 impl Choice {
     const LEAF: Self = Self(1);
-
-    fn new(choices: &[usize]) -> Self {
-        Self(choices.iter().rev().fold(0, |bits, &choice| bits << 4 | choice as u64))
-    }
 
     /// Whether the node as a single root is a leaf.
     pub(super) const fn is_leaf(self) -> bool {

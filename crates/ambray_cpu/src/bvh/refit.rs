@@ -8,7 +8,7 @@ use ambray_scene::Mesh;
 use glam::Vec3;
 use rayon::prelude::*;
 
-use super::build::is_hittable;
+use super::build::{LARGEST, cross_margin, is_hittable};
 use super::collapse::Costs;
 use super::layout::{Blas, Block, Bounds, Child, Node};
 
@@ -156,21 +156,68 @@ fn close<const W: usize>(
     finished.push(all);
 }
 
+/// Puts new corners into a leaf block.
+///
+/// Waiting for memory is most of it, so everything is fetched that can be before anything is done with it: first what the
+/// triangles are, then where their vertices are. The rest looks at several lanes at once.
 fn fit_block<const W: usize>(block: &mut Block<W>, mesh: &Mesh) -> Fitted {
-    let mut bounds = Bounds::EMPTY;
-    for lane in 0..block.count as usize {
-        let mut corners = mesh.corners(block.triangles[lane]);
-        if is_hittable(&corners) {
-            bounds = bounds.union(Bounds::of_points(&corners));
-        } else {
-            corners = [Vec3::NAN; 3];
-        }
-        for (of_block, corner) in block.corners.iter_mut().zip(corners) {
-            of_block[0][lane] = corner.x;
-            of_block[1][lane] = corner.y;
-            of_block[2][lane] = corner.z;
+    let count = (block.count as usize).min(W);
+    let mut indices = [[0; 3]; W];
+    for (indices, &triangle) in indices.iter_mut().zip(&block.triangles[..count]) {
+        *indices = mesh.triangles[triangle as usize];
+    }
+    for (lane, indices) in indices[..count].iter().enumerate() {
+        for (rows, &index) in block.corners.iter_mut().zip(indices) {
+            let position = mesh.positions[index as usize];
+            rows[0][lane] = position.x;
+            rows[1][lane] = position.y;
+            rows[2][lane] = position.z;
         }
     }
-    let step = Costs::TRIANGLES.leaf + Costs::TRIANGLES.primitive * block.count as f32;
+    for lane in doubtful(&block.corners).take_while(|&lane| lane < count) {
+        let corners = block.corners.map(|rows| Vec3::from_array(rows.map(|row| row[lane])));
+        if !is_hittable(&corners) {
+            block.corners.as_flattened_mut().iter_mut().for_each(|row| row[lane] = f32::NAN);
+        }
+    }
+    let bounds = bounds(&block.corners);
+    let step = Costs::TRIANGLES.leaf + Costs::TRIANGLES.primitive * count as f32;
     Fitted { bounds, cost: bounds.half_area() * f64::from(step) }
+}
+
+/// Lanes whose triangles may be such that no ray can hit them, in ascending order; the others can be hit.
+fn doubtful<const W: usize>([a, b, c]: &[[[f32; W]; 3]; 3]) -> impl Iterator<Item = usize> + use<W> {
+    let mut certain = [false; W];
+    for (lane, certain) in certain.iter_mut().enumerate() {
+        // Plain loops over lanes, which compilers make vectors of.
+        let mut reach = 0.0;
+        for rows in [a, b, c] {
+            reach += rows[0][lane].abs() + rows[1][lane].abs() + rows[2][lane].abs();
+        }
+        let p: [f32; 3] = std::array::from_fn(|axis| b[axis][lane] - a[axis][lane]);
+        let q: [f32; 3] = std::array::from_fn(|axis| c[axis][lane] - a[axis][lane]);
+        let margin = |y: usize, z: usize| cross_margin(p[y] * q[z], p[z] * q[y]);
+        let much = (margin(1, 2) > 0.0) | (margin(2, 0) > 0.0) | (margin(0, 1) > 0.0);
+        *certain = (reach <= LARGEST) & much;
+    }
+    (0..W).filter(move |&lane| !certain[lane])
+}
+
+/// Box of all corners; lanes that are not a number do not count.
+fn bounds<const W: usize>(corners: &[[[f32; W]; 3]; 3]) -> Bounds {
+    let mut bounds = Bounds::EMPTY;
+    for axis in 0..3 {
+        let (mut lo, mut hi) = ([f32::INFINITY; 4], [f32::NEG_INFINITY; 4]);
+        for rows in corners {
+            for lanes in rows[axis].as_chunks::<4>().0 {
+                for i in 0..4 {
+                    lo[i] = if lanes[i] < lo[i] { lanes[i] } else { lo[i] };
+                    hi[i] = if lanes[i] > hi[i] { lanes[i] } else { hi[i] };
+                }
+            }
+        }
+        bounds.lo[axis] = lo.into_iter().fold(f32::INFINITY, f32::min);
+        bounds.hi[axis] = hi.into_iter().fold(f32::NEG_INFINITY, f32::max);
+    }
+    bounds
 }

@@ -108,6 +108,12 @@ fn reinsertion_keeps_trees_whole_and_makes_them_better() {
     }
 }
 
+/// What every node and leaf costs by being there.
+fn storage(tree: &Binary, costs: Costs) -> f64 {
+    let primitives = tree.links.iter().filter(|link| link.is_leaf()).count();
+    f64::from(costs.storage * tree.bounds[0].half_area()) / primitives as f64
+}
+
 /// What a wide tree of least cost costs: by trying all ways to share out the places of a node, without tables.
 fn least_cost(tree: &Binary, node: usize, costs: Costs, fat: u32, width: u32) -> f64 {
     fn forest(tree: &Binary, node: usize, roots: u32, costs: Costs, fat: u32, width: u32) -> f64 {
@@ -126,12 +132,13 @@ fn least_cost(tree: &Binary, node: usize, costs: Costs, fat: u32, width: u32) ->
     }
     let area = f64::from(tree.bounds[node].half_area());
     let primitives = tree.gather(node, &mut Default::default()).len() as u32;
-    let as_leaf = area * f64::from(costs.leaf + costs.primitive * primitives as f32);
+    let as_leaf = area * f64::from(costs.leaf + costs.primitive * primitives as f32) + storage(tree, costs);
     let as_leaf = if primitives <= fat { as_leaf } else { f64::INFINITY };
     if tree.links[node].is_leaf() {
         return as_leaf;
     }
-    as_leaf.min(split(tree, node, width, costs, fat, width) + area * f64::from(costs.node))
+    let below = split(tree, node, width, costs, fat, width);
+    as_leaf.min(below + area * f64::from(costs.node) + storage(tree, costs))
 }
 
 /// What a wide tree costs.
@@ -141,7 +148,7 @@ fn cost_of<const W: usize>(tree: &Binary, wide: &collapse::Wide<W>, costs: Costs
             [0, 1, 2].map(|axis| f64::from(node.planes[axis + 3][slot] - node.planes[axis][slot]));
         x * y + y * z + z * x
     };
-    let mut sum = f64::from(tree.bounds[0].half_area() * costs.node);
+    let mut sum = f64::from(tree.bounds[0].half_area() * costs.node) + storage(tree, costs);
     for node in &wide.nodes {
         for (slot, child) in node.children.iter().enumerate().filter(|(_, child)| **child != Child::ROOT) {
             let cost = if child.is_leaf() {
@@ -150,7 +157,7 @@ fn cost_of<const W: usize>(tree: &Binary, wide: &collapse::Wide<W>, costs: Costs
             } else {
                 costs.node
             };
-            sum += area(node, slot) * f64::from(cost);
+            sum += area(node, slot) * f64::from(cost) + storage(tree, costs);
         }
     }
     sum
@@ -160,7 +167,7 @@ fn cost_of<const W: usize>(tree: &Binary, wide: &collapse::Wide<W>, costs: Costs
 fn no_wide_tree_is_cheaper_than_the_chosen_one() {
     for count in [2, 5, 9, 12] {
         let tree = ploc::build(boxes(&soup(count)), 3);
-        for costs in [Costs::TRIANGLES, Costs { node: 1.0, leaf: 0.2, primitive: 0.5 }] {
+        for costs in [Costs::TRIANGLES, Costs { node: 1.0, leaf: 0.2, primitive: 0.5, storage: 0.0 }] {
             // A root stands even where a leaf would be cheaper; a fat of 1 leaves no doubt.
             for fat in [1, 3] {
                 let least = least_cost(&tree, 0, costs, fat.min(count - 1), 4);
@@ -264,4 +271,26 @@ fn the_tree_of_a_surface_stays_small() {
     let tree = build::blas::<16>(&triangles, Quality::Balanced);
     let bytes = size_of_val(&tree.nodes[..]) + size_of_val(&tree.blocks[..]);
     assert!(bytes < 3 * 55 * triangles.len(), "{bytes} bytes for {} triangles", triangles.len());
+}
+
+#[test]
+fn the_quick_test_of_areas_never_errs() {
+    let mut quick = 0;
+    for i in 0..100_000 {
+        // From whole triangles down to slivers that rounding makes lines of, near and far, large and tiny.
+        let (a, p, scale) = (point(i) * 8.0, point(i + 1), 2_f32.powi((i % 200) as i32 - 100));
+        let along = 3.0 * unit_float(pcg(i));
+        let off = Vec3::splat(0.1_f32.powi((i % 13) as i32)) * point(i + 2);
+        let corners = [a, a + p, a + p * along + off].map(|corner| corner * scale);
+        if build::has_much_area(&corners) {
+            assert!(build::has_area(&corners), "{corners:?}");
+            quick += 1;
+        }
+    }
+    assert!(quick > 20_000, "it says yes {quick} times");
+    for corners in
+        [[Vec3::ONE; 3], [Vec3::ZERO, Vec3::ONE, 2.0 * Vec3::ONE], [Vec3::ZERO, Vec3::NAN, Vec3::X]]
+    {
+        assert!(!build::has_much_area(&corners));
+    }
 }
