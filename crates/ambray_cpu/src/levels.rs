@@ -41,11 +41,11 @@ impl<const W: usize> Levels<W> {
     pub(crate) fn build(scene: &Scene, alpha: &dyn AlphaTest, options: &BuildOptions) -> Self {
         let parts = Parts::of(scene, alpha, options.bake_budget);
         let baked: Blas<W> = build::blas(&parts.baked, options.quality);
-        let deforming = parts.deforming.iter().map(|part| {
+        let deforming = parts.deforming.par_iter().map(|part| {
             Deforming::build(part, &scene.meshes[part.mesh as usize], options.updates, options.quality)
         });
         let (deforming, mut meshes): (Vec<_>, Vec<Blas<W>>) = deforming.unzip();
-        meshes.extend(parts.rigid.iter().map(|triangles| build::blas(triangles, options.quality)));
+        meshes.par_extend(parts.rigid.par_iter().map(|triangles| build::blas(triangles, options.quality)));
         let mut levels = Self {
             baked,
             placed: Tlas::default(),

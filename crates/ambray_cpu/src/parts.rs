@@ -1,5 +1,7 @@
 //! Which triangles of a scene go into which tree.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use ambray_scene::{Instance, Motion, Scene};
 use glam::Affine3A;
 use rayon::prelude::*;
@@ -132,22 +134,26 @@ impl Parts {
     }
 }
 
-/// Most triangles of a piece.
-const PIECE: usize = 8192;
+/// Fewest triangles that are worth another thread.
+const GRAIN: usize = 4096;
 
-/// Some triangles of an instance.
+/// The triangles of an instance.
 struct Piece {
+    /// How many triangles stand before these.
+    start: usize,
     mesh: u32,
     /// What its triangles say they belong to.
     instance: u32,
     tree_from_object: Affine3A,
     masked: bool,
-    triangles: std::ops::Range<usize>,
 }
 
-/// Instances in pieces, so that threads have equal shares of large meshes too.
+/// Triangles of several instances, one behind the other.
 #[derive(Default)]
-struct Pieces(Vec<Piece>);
+struct Pieces {
+    pieces: Vec<Piece>,
+    triangles: usize,
+}
 
 impl Pieces {
     fn add(
@@ -158,34 +164,62 @@ impl Pieces {
         tree_from_object: Affine3A,
         alpha: &dyn AlphaTest,
     ) {
-        let masked = !alpha.is_opaque(mesh);
-        let count = scene.meshes[mesh as usize].triangles.len();
-        self.0.extend((0..count).step_by(PIECE).map(|start| {
-            let triangles = start..(start + PIECE).min(count);
-            Piece { mesh, instance, tree_from_object, masked, triangles }
-        }));
+        let (start, masked) = (self.triangles, !alpha.is_opaque(mesh));
+        self.pieces.push(Piece { start, mesh, instance, tree_from_object, masked });
+        self.triangles += scene.meshes[mesh as usize].triangles.len();
     }
 
-    /// All triangles that rays can hit, in the order of the pieces; the others count as dropped.
-    fn triangles(self, scene: &Scene, dropped: &mut usize) -> Vec<Triangle> {
-        let all: usize = self.0.iter().map(|piece| piece.triangles.len()).sum();
-        let hittable: Vec<_> = self.0.into_par_iter().flat_map_iter(|piece| piece.hittable(scene)).collect();
-        *dropped += all - hittable.len();
-        hittable
+    /// All triangles that rays can hit, in order; the others count as dropped.
+    fn triangles(&self, scene: &Scene, dropped: &mut usize) -> Vec<Triangle> {
+        let all = (0..self.triangles).into_par_iter().with_min_len(GRAIN);
+        let lost = AtomicUsize::new(0);
+        let triangle = |current: &mut Option<_>, index: usize| {
+            let triangle = self.piece_of(index, scene, current).triangle(scene, index);
+            if !is_hittable(&triangle.corners) {
+                lost.fetch_add(1, Ordering::Relaxed);
+            }
+            triangle
+        };
+        let mut triangles: Vec<_> = all.map_init(|| None, triangle).collect();
+        let lost = lost.into_inner();
+        if lost > 0 {
+            triangles.retain(|triangle| is_hittable(&triangle.corners));
+        }
+        *dropped += lost;
+        triangles
+    }
+
+    /// The piece with the triangle before which `index` others stand. Neighbours are mostly of the `current` one.
+    fn piece_of<'a>(&'a self, index: usize, scene: &Scene, current: &mut Option<&'a Piece>) -> &'a Piece {
+        match *current {
+            Some(piece) if piece.has(scene, index) => piece,
+            _ => {
+                let piece = self.pieces.partition_point(|piece| piece.end(scene) <= index);
+                current.insert(&self.pieces[piece])
+            }
+        }
     }
 }
 
 impl Piece {
-    fn hittable(self, scene: &Scene) -> impl Iterator<Item = Triangle> {
-        let Self { mesh, instance, tree_from_object, masked, triangles } = self;
-        let mesh = &scene.meshes[mesh as usize];
-        let all = triangles.map(move |triangle| Triangle {
-            corners: mesh.triangles[triangle]
-                .map(|i| tree_from_object.transform_point3(mesh.positions[i as usize])),
-            instance,
+    /// How many triangles stand before what follows.
+    fn end(&self, scene: &Scene) -> usize {
+        self.start + scene.meshes[self.mesh as usize].triangles.len()
+    }
+
+    fn has(&self, scene: &Scene, index: usize) -> bool {
+        (self.start..self.end(scene)).contains(&index)
+    }
+
+    /// The triangle before which `index` triangles stand.
+    fn triangle(&self, scene: &Scene, index: usize) -> Triangle {
+        let (mesh, triangle) = (&scene.meshes[self.mesh as usize], index - self.start);
+        let corner = |i: u32| self.tree_from_object.transform_point3(mesh.positions[i as usize]);
+        Triangle {
+            corners: mesh.triangles[triangle].map(corner),
+            instance: self.instance,
             triangle: triangle as u32,
-            masked,
-        });
-        all.filter(|triangle| is_hittable(&triangle.corners))
+            masked: self.masked,
+        }
     }
 }
