@@ -35,9 +35,10 @@ pub use ambray_core::{
     inspect::{self, Inspection},
     light,
     query::{QueryPoint, QueryResult},
-    settings, shape,
+    settings, shape, trace,
     view::View,
 };
+pub use ambray_cpu as cpu;
 pub use ambray_cpu::{BuildOptions, Isa, Quality, Width};
 pub use ambray_scene as scene;
 pub use ambray_vulkan as vulkan;

@@ -15,7 +15,7 @@ use ambray_core::{
     trace::{Hit, Ray, Trace},
     view::View,
 };
-use ambray_cpu::{BackendError, BuildOptions, Isa};
+use ambray_cpu::{BackendError, BuildOptions, Isa, rays::FrameRays};
 use ambray_scene::Scene;
 use ambray_vulkan::{AccelerationStats, DeviceReport, Picture, TraceMode, VulkanError};
 use glam::Vec3;
@@ -73,6 +73,9 @@ pub enum RenderError {
     /// A pixel outside the picture was to be inspected.
     #[error(transparent)]
     Pixel(#[from] OutsidePicture),
+    /// More rays were to be recorded than there are tags for.
+    #[error("{0}")]
+    TooManyRays(String),
     /// The threads could not be started.
     #[error("the threads could not be started: {0}")]
     Threads(String),
@@ -91,6 +94,7 @@ impl From<BackendError> for RenderError {
     fn from(error: BackendError) -> Self {
         match error {
             BackendError::Cancelled(_) => Self::Cancelled,
+            BackendError::TooManyRays => Self::TooManyRays(error.to_string()),
             other => Self::Threads(other.to_string()),
         }
     }
@@ -461,6 +465,27 @@ impl Renderer {
                 Ok(inspection)
             }
         })
+    }
+
+    /// The rays that the processor traces for a frame with `settings`, shadow rays aside. Beside a device it is made ready
+    /// first.
+    ///
+    /// # Errors
+    /// As [`render`](Self::render), and [`RenderError::TooManyRays`].
+    pub fn record_rays(
+        &mut self,
+        settings: &Settings,
+        control: Control<'_>,
+    ) -> Result<FrameRays, RenderError> {
+        needs_no_picture(settings.method)?;
+        let (view, _) = self.prepare(settings, control)?;
+        match self.backends.current() {
+            Backend::Cpu(cpu) => Ok(cpu.record_rays(settings, &view, control)?),
+            Backend::Vulkan(_) => {
+                let cpu = self.backends.beside(settings.method, control.threads)?;
+                Ok(cpu.record_rays(settings, &view, control)?)
+            }
+        }
     }
 
     /// The scene at its moment, and the view of it.

@@ -5,6 +5,7 @@ mod backend;
 mod compare;
 mod diff;
 mod notes;
+mod rays;
 mod sequence;
 mod view;
 
@@ -20,12 +21,13 @@ use clap::{
 };
 
 pub use animate::{AnimateArgs, Updates, UpdatesArgs};
-use notes::{COMPARE_NOTES, DIFF_NOTES, EXAMPLES, POINTS_HELP, PRECEDENCE, RENDER_NOTES, VIEW_NOTES};
+use notes::{BENCH_NOTES, COMPARE_NOTES, DIFF_NOTES, EXAMPLES, POINTS_HELP, PRECEDENCE, RENDER_NOTES, VIEW_NOTES};
 
 pub use ambray_files::{Format, Rate};
 pub use backend::{Backend, BackendArgs, DeviceArgs, Grouping, GroupingArgs, Trace};
 pub use compare::CompareArgs;
 pub use diff::DiffArgs;
+pub use rays::{KernelArgs, Kernels, Quality, RaysArgs};
 pub use sequence::{Frames, SequenceArgs};
 pub use view::ViewArgs;
 
@@ -54,8 +56,8 @@ pub enum Command {
     /// Compare with the truth and with other methods, in a report; or make the paper's figures
     #[command(after_long_help = COMPARE_NOTES.to_owned() + PRECEDENCE)]
     Compare(Box<CompareArgs>),
-    /// Measure the time of whole frames
-    #[command(after_long_help = PRECEDENCE)]
+    /// Measure the time of whole frames, or of their rays alone
+    #[command(after_long_help = BENCH_NOTES.to_owned() + PRECEDENCE)]
     Bench(Box<BenchArgs>),
     /// Say how far a picture is from another, layer by layer
     #[command(after_long_help = DIFF_NOTES)]
@@ -180,8 +182,9 @@ pub struct QueryArgs {
 /// Arguments of `ambray bench`.
 #[derive(Clone, Debug, Args)]
 pub struct BenchArgs {
-    /// Scenes: .gltf, .glb or .obj files, or built-in ones: atrium, or banner and flock, which move
-    #[arg(value_name = "SCENE", default_value = "atrium")]
+    /// Scenes: .gltf, .glb or .obj files, or built-in ones: atrium, or banner and flock, which move [default: atrium; with
+    /// --rays none]
+    #[arg(value_name = "SCENE")]
     pub scenes: Vec<PathBuf>,
     /// Scene of each glTF file by number from 0 or by name [default: the one that the file names, else the first]
     #[arg(long, value_name = "NAME_OR_INDEX")]
@@ -210,6 +213,12 @@ pub struct BenchArgs {
     /// Scenes that move.
     #[command(flatten)]
     pub animate: AnimateArgs,
+    /// Rays alone.
+    #[command(flatten)]
+    pub rays: RaysArgs,
+    /// The processor's kernels.
+    #[command(flatten)]
+    pub kernels: KernelArgs,
     /// Print the result as one JSON object on stdout
     #[arg(long)]
     pub json: bool,
@@ -231,6 +240,14 @@ pub struct BenchArgs {
     /// Settings.
     #[command(flatten)]
     pub settings: SettingsArgs,
+}
+
+impl BenchArgs {
+    /// The scenes to render: the built-in one if none is named.
+    #[must_use]
+    pub fn rendered(&self) -> Vec<PathBuf> {
+        if self.scenes.is_empty() { vec![PathBuf::from("atrium")] } else { self.scenes.clone() }
+    }
 }
 
 /// Arguments of `ambray info`.

@@ -12,6 +12,7 @@ mod levels;
 mod motion;
 mod options;
 mod parts;
+pub mod rays;
 mod shapes;
 mod stats;
 mod tracer;

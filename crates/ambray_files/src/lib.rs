@@ -1,7 +1,7 @@
 //! The files of Ambray's programs, for whoever shows pictures and lets people choose settings.
 //!
 //! In: [`scene_source`] loads a scene by path or by the name of a built-in one, [`settings_file`] reads settings from TOML
-//! and from pictures, [`planes`] the values of pictures. Out: a [`Plan`] decides which files a frame becomes and writes them
+//! and from pictures, [`planes`] the values of pictures, [`rays`] those of a frame. Out: a [`Plan`] decides which files a frame becomes and writes them
 //! as PNG or OpenEXR, [`video`] makes videos, [`command_line`] spells the call of `ambray render` that makes the same
 //! picture. All files appear complete or not at all ([`atomic`]), also where the program ends early ([`temporary`],
 //! [`interruption`]).
@@ -22,6 +22,7 @@ pub mod planes;
 mod png;
 mod problem;
 mod rate;
+pub mod rays;
 pub mod scene_source;
 pub mod settings_file;
 pub mod temporary;

@@ -85,6 +85,19 @@ impl Scene {
         self.instances.iter().map(|i| self.meshes[i.mesh as usize].triangles.len() as u64).sum()
     }
 
+    /// Takes away all instances whose materials are masked or blended. Nothing that moves stays in the rig's care then: the
+    /// scene stands still.
+    pub fn remove_transparent(&mut self) {
+        let is_opaque =
+            |material: u32| self.materials[material as usize].alpha_mode == crate::AlphaMode::Opaque;
+        let (meshes, instances) = (&self.meshes, std::mem::take(&mut self.instances));
+        let kept = instances.into_iter().filter(|i| is_opaque(meshes[i.mesh as usize].material));
+        let instances: Vec<_> = kept.collect();
+        let shapes = self.shape_instances.iter().copied().filter(|shape| is_opaque(shape.material)).collect();
+        (self.instances, self.shape_instances) = (instances, shapes);
+        self.rig = None;
+    }
+
     /// Smallest box around all instances, world space; `None` if nothing is there. Shapes count with the corners of their
     /// own box, points that are not finite do not count.
     #[must_use]

@@ -15,6 +15,7 @@ Examples:
   ambray compare scene.glb                     a report: errors, times and pictures of nine methods
   ambray compare --paper                       the paper's figures, made again and measured
   ambray bench --frames 200 --json
+  ambray bench scene.glb --rays rays           the speed of the tracer alone, on the rays of a frame
   ambray bench flock --animate                 what it costs to follow an animation
   ambray diff picture.exr truth.exr --measure flip --tolerance 0.05 -o error.png
   ambray info scene.glb                        what is in it: meshes, lights, cameras, animations
@@ -76,6 +77,20 @@ Videos:
   GIF needs nothing else: 256 colours a frame, up to 50 frames a second, beginnings of frames rounded to hundredths of a \
 second, repeated for ever. MP4 (H.264, even sides), WebM (VP9) and animated WebP need ffmpeg on the path. Every so many \
 frames (:STEP) are shown as much longer. The video appears when it is complete; Ctrl-C leaves none.
+
+";
+
+pub(super) const BENCH_NOTES: &str = "\
+With --rays, threads trace the rays of a frame and do nothing else, tile by tile of 16 x 16 pixels:
+  primary                    those of the camera
+  ambient                    the first batch, closest hits
+  chords-paper               the second batch of --thin paper, any hits
+  chords-sheet               the second batch of --thin sheet, closest hits
+Each is traced in packets as the frame would (traced), in packets sorted by sample class and number of the ray \
+(deinterleaved), and one by one (pixel), by each instruction set. Rates are millions of rays a second of the time that the \
+busiest thread ran, medians over the rounds with the lowest and highest; other programs hardly matter to them.
+  The triangles are those of the scene in world space. Those of masked and blended materials are left out of the files, while \
+frames see them; --opaque takes them from both.
 
 ";
 

@@ -12,7 +12,7 @@ use ambray::{
 use anyhow::{anyhow, bail};
 use serde::Serialize;
 
-use super::{control, explained, following, renderer};
+use super::{bench::opened, control, explained, following, renderer};
 use crate::{
     args::{BenchArgs, Updates},
     failure::with_hint,
@@ -21,7 +21,7 @@ use crate::{
     report::{
         self, BackendReport, BuildReport, SceneReport, Spread, bytes, counted, milliseconds, quantile, short,
     },
-    scene_source::{self, Source},
+    scene_source::Source,
     signals, terminal,
     timeline::{Timeline, clips_name, playing},
 };
@@ -125,7 +125,7 @@ pub(super) fn run(
         settings: settings.clone(),
         scenes: Vec::new(),
     };
-    for path in &args.scenes {
+    for path in &args.rendered() {
         let scene = measure(path, args, settings, options)?;
         if !args.json && !args.run.quiet {
             terminal::print(&scene.text(&rate.to_string(), settings))?;
@@ -141,7 +141,7 @@ fn measure(
     settings: &Settings,
     options: &RendererOptions,
 ) -> anyhow::Result<SceneAnimate> {
-    let source = scene_source::open(path, args.gltf_scene.as_deref())?;
+    let source = opened(path, args)?;
     let (animation, duration) = animation(settings, &source)?;
     let rate = args.animate.fps.unwrap_or_default();
     let timeline = Timeline::new(settings.clone(), rate, true);

@@ -1,4 +1,6 @@
-//! `ambray bench`: the time of whole frames.
+//! `ambray bench`: the time of whole frames, or of their rays alone.
+
+mod rays;
 
 use std::{
     fmt::Write as _,
@@ -6,7 +8,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use ambray::{RayCounts, Renderer, RendererOptions, settings::Settings};
+use ambray::{Isa, RayCounts, Renderer, RendererOptions, settings::Settings};
 use ambray_files::{
     atomic::{Batch, Target},
     settings_file,
@@ -28,7 +30,8 @@ use crate::{
         self, AccelerationReport, BackendReport, BuildReport, RayReport, SceneReport, Spread, StageReport,
         ViewReport, quantile,
     },
-    scene_source, settings, signals, terminal,
+    scene_source::{self, Source},
+    settings, signals, terminal,
 };
 
 /// Frames that are measured unless `--frames` says otherwise.
@@ -68,8 +71,11 @@ struct SceneBench {
 pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
     let settings =
         settings::resolve(&SettingsArgs { flags: thin_cost::flags(args)?, ..args.settings.clone() })?;
-    let options = following(&args.backend.options(args.grouping.grouping)?, args.updates.updates);
+    let mut options = following(&args.backend.options(args.grouping.grouping)?, args.updates.updates);
     check_animate(args)?;
+    if args.rays.rays.is_none() {
+        options.build.isa = only_isa(args)?;
+    }
     let target = args.output.as_deref().map(Target::of);
     let saved = args.settings.save_settings.as_deref().map(Target::of);
     if target.is_some() && target == saved {
@@ -86,7 +92,9 @@ pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
     if cfg!(debug_assertions) {
         terminal::warn("this is not a release build: times say little");
     }
-    let json = if args.animate.animate {
+    let json = if args.rays.rays.is_some() {
+        rays::run(args, &settings, &options)?
+    } else if args.animate.animate {
         animate::run(args, &settings, &options)?
     } else {
         all(args, &settings, &options)?
@@ -119,6 +127,28 @@ fn check_animate(args: &BenchArgs) -> anyhow::Result<()> {
     }
 }
 
+/// The instruction set that frames are asked to be rendered with.
+fn only_isa(args: &BenchArgs) -> anyhow::Result<Option<Isa>> {
+    if let Some(option) = args.rays.needs_rays() {
+        bail!("{option} is not allowed without --rays");
+    }
+    match args.kernels.isa[..] {
+        [] => Ok(None),
+        [kernels] if kernels.isa().is_available() => Ok(Some(kernels.isa())),
+        [kernels] => bail!("--isa {} is not allowed: this machine lacks it", kernels.isa().name()),
+        _ => bail!("--isa: more than one instruction set is not allowed without --rays"),
+    }
+}
+
+/// The scene at `path`, as it is to be measured.
+pub(super) fn opened(path: &Path, args: &BenchArgs) -> anyhow::Result<Source> {
+    let mut source = scene_source::open(path, args.gltf_scene.as_deref())?;
+    if args.kernels.opaque {
+        source.scene.remove_transparent();
+    }
+    Ok(source)
+}
+
 /// Measures all scenes; returns the result as JSON.
 fn all(args: &BenchArgs, settings: &Settings, options: &RendererOptions) -> anyhow::Result<String> {
     let mut report = BenchReport {
@@ -128,7 +158,7 @@ fn all(args: &BenchArgs, settings: &Settings, options: &RendererOptions) -> anyh
         settings: settings.clone(),
         scenes: Vec::new(),
     };
-    for scene in &args.scenes {
+    for scene in &args.rendered() {
         let (bench, threads) = measure(scene, args, settings, options)?;
         report.threads = threads;
         if !args.json && !args.run.quiet {
@@ -146,7 +176,7 @@ fn measure(
     settings: &Settings,
     options: &RendererOptions,
 ) -> anyhow::Result<(SceneBench, usize)> {
-    let source = scene_source::open(path, args.gltf_scene.as_deref())?;
+    let source = opened(path, args)?;
     check_animation(settings, &source)?;
     let scene = SceneReport::of(&source);
     let mut renderer = renderer(source.scene, options, &args.run)?;

@@ -26,6 +26,8 @@ use first::FirstBatch;
 use radiance::RadianceScratch;
 use thin::{Chords, SecondBatch};
 
+pub use witness::{Recorded, Recording, record};
+
 /// Rays of one batch: large enough to amortise calls, small enough for the cache.
 const BATCH_RAYS: usize = 8192;
 
@@ -157,12 +159,7 @@ pub fn gather(
     scratch: &mut GatherScratch,
     out: &mut [Gathered],
 ) {
-    let spp = params.samples.spp() as usize;
-    let rays_per_point = match params.thin {
-        Thin::Paper => spp.max(spp * (spp - 1) / 2),
-        Thin::Sheet | Thin::Off => spp,
-    };
-    let batch = (BATCH_RAYS / rays_per_point).max(1);
+    let batch = params.batch_points();
     for (points, out) in points.chunks(batch).zip(out.chunks_mut(batch)) {
         gather_batch(world, params, points, scratch, out);
     }
@@ -252,6 +249,16 @@ impl<'a> GatherParams<'a> {
             samples,
             temporal: settings.temporal == Temporal::On,
         }
+    }
+
+    /// Points of one batch.
+    fn batch_points(&self) -> usize {
+        let spp = self.samples.spp() as usize;
+        let rays_per_point = match self.thin {
+            Thin::Paper => spp.max(spp * (spp - 1) / 2),
+            Thin::Sheet | Thin::Off => spp,
+        };
+        (BATCH_RAYS / rays_per_point).max(1)
     }
 
     /// Whether hits need their radiance.

@@ -31,7 +31,7 @@ impl SecondBatch {
 /// A chord between two missed rays of a point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Chord {
-    point: u32,
+    pub(super) point: u32,
     /// The samples whose ends it joins; there are at most 65536.
     pub(super) joins: [u16; 2],
     /// Length, scene units.

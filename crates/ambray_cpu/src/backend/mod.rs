@@ -9,6 +9,7 @@ mod motion;
 mod pass1;
 mod pass2;
 mod points;
+mod record;
 mod rival;
 mod stages;
 mod temporal;
@@ -34,6 +35,7 @@ use ambray_core::{
 use ambray_scene::{Scene, surface::Surfaces};
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 
+pub(crate) use pass1::TILE;
 pub use world::CpuWorld;
 
 use temporal::{History, Sequel};
@@ -47,6 +49,9 @@ pub enum BackendError {
     /// The caller cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+    /// More rays were to be recorded than there are tags for.
+    #[error("the picture has too many rays to record: at most 2^32, counted by pixels and by pairs of rays")]
+    TooManyRays,
     /// The threads could not be started.
     #[error("the threads could not be started")]
     Threads(#[from] ThreadPoolBuildError),

@@ -27,7 +27,7 @@ use super::{
 };
 
 /// Pixels a side of a tile: 16 pixels of each class, a packet of parallel rays.
-const TILE: usize = 16;
+pub(crate) const TILE: usize = 16;
 
 /// What pass 1 leaves for pass 2, row by row from the top.
 #[derive(Debug)]

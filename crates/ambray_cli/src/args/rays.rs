@@ -1,0 +1,139 @@
+//! Options of `ambray bench` that are about rays and the kernels that trace them.
+
+use std::path::PathBuf;
+
+use ambray::Isa;
+use clap::{Args, ValueEnum};
+
+use super::whole;
+
+/// Measuring rays alone.
+#[derive(Clone, Debug, Args)]
+pub struct RaysArgs {
+    /// Measure the tracer on the rays of a frame. With a SCENE its triangles and rays are written to FOLDER first, in the
+    /// format of docs/performance.md; without one those that are there are measured
+    #[arg(long, value_name = "FOLDER")]
+    pub rays: Option<PathBuf>,
+    /// Rounds of --rays, in each of which everything is measured in turn; 0 only writes the files
+    #[arg(long, value_name = "N", default_value_t = 7, value_parser = |text: &str| whole::<u32>(text, 0, 10_000))]
+    pub rounds: u32,
+    /// Files of --rays to measure, by their names without .rays, separated by commas [default: all]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub batches: Vec<String>,
+    /// Effort spent on the trees of --rays, several separated by commas: each is measured
+    #[arg(long, value_enum, value_name = "QUALITY", value_delimiter = ',', default_value = "balanced")]
+    pub quality: Vec<Quality>,
+    /// Triangles to write with --rays: each is cut in four, the surface staying the same, until there are so many; of more,
+    /// the largest are kept. The rays are those of the scene as it is
+    #[arg(long, value_name = "N", value_parser = |text: &str| whole::<u64>(text, 1, 1 << 30))]
+    pub triangles: Option<u64>,
+    /// Write the hits of --rays to this folder, one file for each of rays
+    #[arg(long, value_name = "FOLDER")]
+    pub write_hits: Option<PathBuf>,
+    /// Compare the hits of --rays with those in this folder, such as of another tracer
+    #[arg(long, value_name = "FOLDER")]
+    pub check_hits: Option<PathBuf>,
+}
+
+impl RaysArgs {
+    /// The first option that means nothing without `--rays`.
+    #[must_use]
+    pub fn needs_rays(&self) -> Option<&'static str> {
+        let given = [
+            ("--batches", !self.batches.is_empty()),
+            ("--triangles", self.triangles.is_some()),
+            ("--write-hits", self.write_hits.is_some()),
+            ("--check-hits", self.check_hits.is_some()),
+        ];
+        given.into_iter().find_map(|(name, given)| given.then_some(name))
+    }
+}
+
+/// What the processor traces with, and what.
+#[derive(Clone, Debug, Args)]
+pub struct KernelArgs {
+    /// Instruction set of the processor's kernels; with --rays several, separated by commas [default: the best of this
+    /// machine; with --rays all that it has]
+    #[arg(long, value_enum, value_name = "ISA", value_delimiter = ',', help_heading = "Backend")]
+    pub isa: Vec<Kernels>,
+    /// Leave out all surfaces whose materials are masked or blended
+    #[arg(long, help_heading = "Backend")]
+    pub opaque: bool,
+}
+
+/// Value of `--isa`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Kernels {
+    /// What every processor has
+    Portable,
+    /// AVX2 with FMA and BMI
+    Avx2,
+    /// AVX-512 F, VL, DQ and BW
+    Avx512,
+}
+
+impl Kernels {
+    /// What the tracer calls it.
+    #[must_use]
+    pub const fn isa(self) -> Isa {
+        match self {
+            Self::Portable => Isa::Portable,
+            Self::Avx2 => Isa::Avx2,
+            Self::Avx512 => Isa::Avx512,
+        }
+    }
+}
+
+/// Value of `--quality`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Quality {
+    /// Built fast
+    FastBuild,
+    /// What a renderer takes
+    Balanced,
+    /// Traced fast
+    BestTrace,
+}
+
+impl Quality {
+    /// All values, fastest build first.
+    pub const ALL: [Self; 3] = [Self::FastBuild, Self::Balanced, Self::BestTrace];
+
+    /// Its name on the command line.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::FastBuild => "fast-build",
+            Self::Balanced => "balanced",
+            Self::BestTrace => "best-trace",
+        }
+    }
+
+    /// What the tracer calls it.
+    #[must_use]
+    pub const fn quality(self) -> ambray::Quality {
+        match self {
+            Self::FastBuild => ambray::Quality::FastBuild,
+            Self::Balanced => ambray::Quality::Balanced,
+            Self::BestTrace => ambray::Quality::BestTrace,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn everything_of_the_tracer_can_be_named() {
+        let isas: Vec<_> = Kernels::value_variants().iter().map(|kernels| kernels.isa()).collect();
+        assert_eq!(isas, Isa::ALL);
+        for (kernels, isa) in Kernels::value_variants().iter().zip(Isa::ALL) {
+            assert_eq!(Kernels::from_str(isa.name(), false), Ok(*kernels));
+        }
+        assert_eq!(Quality::ALL.map(Quality::quality), ambray::Quality::ALL);
+        for quality in Quality::ALL {
+            assert_eq!(Quality::from_str(quality.name(), false), Ok(quality));
+        }
+    }
+}
