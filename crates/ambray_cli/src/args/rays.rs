@@ -7,6 +7,9 @@ use clap::{Args, ValueEnum};
 
 use super::whole;
 
+/// Builds of each kind of tree unless `--builds` says otherwise.
+const BUILDS: u32 = 3;
+
 /// Measuring rays alone.
 #[derive(Clone, Debug, Args)]
 pub struct RaysArgs {
@@ -14,9 +17,13 @@ pub struct RaysArgs {
     /// format of docs/performance.md; without one those that are there are measured
     #[arg(long, value_name = "FOLDER")]
     pub rays: Option<PathBuf>,
-    /// Rounds of --rays, in each of which everything is measured in turn; 0 only writes the files
+    /// Rounds of --rays, in each of which everything is measured in turn; 0 traces nothing
     #[arg(long, value_name = "N", default_value_t = 7, value_parser = |text: &str| whole::<u32>(text, 0, 10_000))]
     pub rounds: u32,
+    /// How often the trees of --rays are built to measure that, each quality in turn; 0 skips it [default: 3, or 0 with
+    /// --rounds 0]
+    #[arg(long, value_name = "N", value_parser = |text: &str| whole::<u32>(text, 0, 1000))]
+    pub builds: Option<u32>,
     /// Files of --rays to measure, by their names without .rays, separated by commas [default: all]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub batches: Vec<String>,
@@ -36,10 +43,17 @@ pub struct RaysArgs {
 }
 
 impl RaysArgs {
+    /// Builds to measure of each kind.
+    #[must_use]
+    pub fn builds(&self) -> u32 {
+        self.builds.unwrap_or(if self.rounds == 0 { 0 } else { BUILDS })
+    }
+
     /// The first option that means nothing without `--rays`.
     #[must_use]
     pub fn needs_rays(&self) -> Option<&'static str> {
         let given = [
+            ("--builds", self.builds.is_some()),
             ("--batches", !self.batches.is_empty()),
             ("--triangles", self.triangles.is_some()),
             ("--write-hits", self.write_hits.is_some()),

@@ -25,9 +25,6 @@ use super::{
 };
 use crate::{args::Quality, progress::Progress, report::milliseconds, signals};
 
-/// Builds of each kind, of which the median counts.
-const MOST_BUILDS: u32 = 3;
-
 /// A tracer to be measured.
 #[derive(Debug)]
 pub(super) struct Contender {
@@ -57,7 +54,7 @@ pub(super) fn contenders(
     Ok(contenders)
 }
 
-/// Builds trees of every quality in every width that `isas` take, all in turn.
+/// Builds trees of every quality in every width that `isas` take, `rounds` times in turn, at least once.
 pub(super) fn builds(
     scene: &Scene,
     isas: &[Isa],
@@ -65,12 +62,13 @@ pub(super) fn builds(
     rounds: u32,
     progress: &Progress,
 ) -> anyhow::Result<Vec<BuildReport>> {
-    let mut widths = isas.iter().map(|&isa| if isa == Isa::Avx512 { Width::Sixteen } else { Width::Eight });
-    let widths = Width::ALL.into_iter().rev().filter(|&width| widths.any(|other| other == width));
+    // What the tracer takes by itself.
+    let width_of = |isa: Isa| if isa == Isa::Avx512 { Width::Sixteen } else { Width::Eight };
+    let is_taken = |width: &Width| isas.iter().any(|&isa| width_of(isa) == *width);
+    let widths = Width::ALL.into_iter().rev().filter(is_taken);
     let kinds: Vec<(Quality, Width)> =
         widths.flat_map(|width| Quality::ALL.map(|quality| (quality, width))).collect();
     let mut built: Vec<Vec<Stats>> = vec![Vec::new(); kinds.len()];
-    let rounds = rounds.min(MOST_BUILDS);
     for round in 0..rounds {
         for (i, (&(quality, width), built)) in kinds.iter().zip(&mut built).enumerate() {
             let options = BuildOptions { width: Some(width), ..of_quality(quality) };

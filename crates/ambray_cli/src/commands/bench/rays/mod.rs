@@ -39,7 +39,7 @@ pub(super) fn run(
     if let (Some(source), true) = (&report.source, says(args)) {
         terminal::print(&source.text(settings))?;
     }
-    if args.rays.rounds > 0 {
+    if args.rays.rounds > 0 || args.rays.builds() > 0 {
         measure(args, &folder, &mut report)?;
     }
     json(&report)
@@ -47,16 +47,23 @@ pub(super) fn run(
 
 fn measure(args: &BenchArgs, folder: &RaysFolder, report: &mut RaysReport) -> anyhow::Result<()> {
     let _graceful = signals::Graceful::begin();
-    let names = folder.batches(&args.rays.batches)?;
+    // Before any work: names may be wrong.
+    let names = if args.rays.rounds > 0 { folder.batches(&args.rays.batches)? } else { Vec::new() };
     let scene = folder.triangles()?.into_scene();
     report.triangles = scene.triangle_count();
-    let progress = Progress::new("building", args.run.quiet);
-    report.builds = measure::builds(&scene, &isas(args), report.threads, args.rays.rounds, &progress)?;
-    let contenders = measure::contenders(&scene, &isas(args), &args.rays.quality, report.threads)?;
-    drop((progress, scene));
+    let (isas, builds) = (isas(args), args.rays.builds());
+    if builds > 0 {
+        let progress = Progress::new("building", args.run.quiet);
+        report.builds = measure::builds(&scene, &isas, report.threads, builds, &progress)?;
+    }
     if says(args) {
         terminal::print(&report.head())?;
     }
+    if names.is_empty() {
+        return Ok(());
+    }
+    let contenders = measure::contenders(&scene, &isas, &args.rays.quality, report.threads)?;
+    drop(scene);
     for name in &names {
         let batch = measure_batch(args, folder, name, &contenders, report.threads)?;
         if says(args) {

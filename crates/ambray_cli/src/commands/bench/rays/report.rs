@@ -134,6 +134,9 @@ impl RaysReport {
             counted(self.threads as u64, "thread"),
             counted(u64::from(self.rounds), "round"),
         );
+        if self.builds.is_empty() {
+            return text;
+        }
         text.push_str(
             "trees    quality     width   build ms    memory  bytes/triangle  surface-area cost  triangles/leaf\n",
         );
