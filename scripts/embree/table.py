@@ -120,8 +120,11 @@ def batch_table(name, folders):
     cells = []
     for batch in batches.values():
         agreement = batch["agreement"]
-        cells.append(f"{agreement['differing_hits']}; {agreement['largest_relative_difference']:.0e}")
-    rows.append(["hits that differ; largest relative difference of distances", *cells, ""])
+        cells.append(
+            f"{agreement['differing_hits']}; {agreement['far_hits']}; {agreement['largest_relative_difference']:.0e}"
+        )
+    what = "rays that one of both misses; hits farther apart than 1/1000 of the distance; largest difference of the rest"
+    rows.append([what, *cells, ""])
     lines.append(table(["", *batches, "geometric mean"], rows))
     return "\n".join(lines)
 

@@ -21,7 +21,9 @@ use clap::{
 };
 
 pub use animate::{AnimateArgs, Updates, UpdatesArgs};
-use notes::{BENCH_NOTES, COMPARE_NOTES, DIFF_NOTES, EXAMPLES, POINTS_HELP, PRECEDENCE, RENDER_NOTES, VIEW_NOTES};
+use notes::{
+    BENCH_NOTES, COMPARE_NOTES, DIFF_NOTES, EXAMPLES, POINTS_HELP, PRECEDENCE, RENDER_NOTES, VIEW_NOTES,
+};
 
 pub use ambray_files::{Format, Rate};
 pub use backend::{Backend, BackendArgs, DeviceArgs, Grouping, GroupingArgs, Trace};

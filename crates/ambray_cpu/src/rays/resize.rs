@@ -91,7 +91,11 @@ mod tests {
     fn cuts_keep_the_surface() {
         for count in [3, 4, 6, 9, 12, 13, 48, 50, 100, 1000] {
             let resized = shapes().resized(count);
-            assert!((count - 2..=count).contains(&resized.indices.len()), "{count}: {}", resized.indices.len());
+            assert!(
+                (count - 2..=count).contains(&resized.indices.len()),
+                "{count}: {}",
+                resized.indices.len()
+            );
             assert!((area(&resized) - 1.005).abs() < 1e-5, "{count}: {}", area(&resized));
         }
     }

@@ -28,8 +28,16 @@ pub struct Hits {
 pub struct Agreement {
     /// Rays that hit something in one of them only.
     pub differing: u64,
-    /// Of rays that hit something in both, the largest difference of the distances over the larger one.
+    /// Of rays that hit something in both, those whose distances differ by more than [`FAR`](Self::FAR): they hit other
+    /// places.
+    pub far: u64,
+    /// Of the rest, the largest difference of the distances over the larger one.
     pub largest_difference: f64,
+}
+
+impl Agreement {
+    /// Difference of two distances, over the larger one, that rounding does not explain.
+    pub const FAR: f64 = 1e-3;
 }
 
 impl Hits {
@@ -92,7 +100,11 @@ impl Hits {
             } else if *a != NONE && kind == RayKind::Closest {
                 let (s, t) = (f64::from(*s), f64::from(*t));
                 let difference = (s - t).abs() / s.abs().max(t.abs()).max(f64::MIN_POSITIVE);
-                agreement.largest_difference = agreement.largest_difference.max(difference);
+                if difference > Agreement::FAR {
+                    agreement.far += 1;
+                } else {
+                    agreement.largest_difference = agreement.largest_difference.max(difference);
+                }
             }
         }
         Ok(agreement)

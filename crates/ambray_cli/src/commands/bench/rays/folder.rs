@@ -48,7 +48,9 @@ impl RaysFolder {
     pub(super) fn triangles(&self) -> anyhow::Result<Triangles> {
         read_triangles(&self.triangles_file()).map_err(|error| {
             let is_missing = error.chain().any(|cause| {
-                cause.downcast_ref().is_some_and(|io: &std::io::Error| io.kind() == std::io::ErrorKind::NotFound)
+                cause
+                    .downcast_ref()
+                    .is_some_and(|io: &std::io::Error| io.kind() == std::io::ErrorKind::NotFound)
             });
             let hint = "name a scene to write its triangles and rays to the folder";
             if is_missing { with_hint(error, hint) } else { error }

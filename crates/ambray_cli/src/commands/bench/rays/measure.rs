@@ -74,7 +74,8 @@ pub(super) fn builds(
             let options = BuildOptions { width: Some(width), ..of_quality(quality) };
             built.push(*build(scene, options, threads)?.stats());
             check_interrupted()?;
-            progress.report((round as usize * kinds.len() + i) as f32 / (rounds as usize * kinds.len()) as f32);
+            progress
+                .report((round as usize * kinds.len() + i) as f32 / (rounds as usize * kinds.len()) as f32);
         }
     }
     let report = |(&(quality, width), stats): (&(Quality, Width), &Vec<Stats>)| {
@@ -156,7 +157,8 @@ pub(super) fn batch(
             by_thread.push(rate(thread));
             by_wall.push(rate(wall));
             check_interrupted()?;
-            progress.report((round as usize * tasks.len() + i) as f32 / (rounds as usize * tasks.len()) as f32);
+            progress
+                .report((round as usize * tasks.len() + i) as f32 / (rounds as usize * tasks.len()) as f32);
         }
     }
     let report = |(task, (by_thread, by_wall)): (&Task<'_>, &(Vec<f64>, Vec<f64>))| RateReport {

@@ -99,7 +99,11 @@ pub(super) struct RateSpread {
 
 #[derive(Clone, Copy, Debug, Serialize)]
 struct AgreementReport {
+    /// Rays that hit something for one only.
     differing_hits: u64,
+    /// Rays whose distances differ by more than a thousandth.
+    far_hits: u64,
+    /// Of the others.
     largest_relative_difference: f64,
 }
 
@@ -141,8 +145,15 @@ impl RaysReport {
             "trees    quality     width   build ms    memory  bytes/triangle  surface-area cost  triangles/leaf\n",
         );
         for build in &self.builds {
-            let BuildReport { quality, width, build_ms, bytes_per_triangle, sah_cost, triangles_per_leaf, .. } =
-                build;
+            let BuildReport {
+                quality,
+                width,
+                build_ms,
+                bytes_per_triangle,
+                sah_cost,
+                triangles_per_leaf,
+                ..
+            } = build;
             let _ = writeln!(
                 text, // writing to a string cannot fail
                 "         {quality:<11} {width:>5} {:>10.1} {:>9} {bytes_per_triangle:>15.1} {sah_cost:>18.1} {triangles_per_leaf:>15.2}",
@@ -218,6 +229,7 @@ impl BatchReport {
             rates,
             agreement: agreement.map(|agreement| AgreementReport {
                 differing_hits: agreement.differing,
+                far_hits: agreement.far,
                 largest_relative_difference: agreement.largest_difference,
             }),
         }
@@ -226,13 +238,11 @@ impl BatchReport {
     /// For people.
     pub(super) fn text(&self) -> String {
         let share = 100.0 * self.hits as f64 / self.rays.max(1) as f64;
-        let mut text = format!(
-            "{}: {}, {} hit, {share:.1} % hit\n",
-            self.name,
-            counted(self.rays, "ray"),
-            self.kind,
+        let mut text =
+            format!("{}: {}, {} hit, {share:.1} % hit\n", self.name, counted(self.rays, "ray"), self.kind,);
+        text.push_str(
+            "         quality     kernels                          million rays/s     min     max\n",
         );
-        text.push_str("         quality     kernels                          million rays/s     min     max\n");
         for rate in &self.rates {
             let kernels = format!("{} {} {}", rate.isa, rate.mode, rate.order);
             let RateSpread { median, min, max } = rate.mrays_per_s;
@@ -245,8 +255,9 @@ impl BatchReport {
         if let Some(agreement) = &self.agreement {
             let _ = writeln!(
                 text,
-                "         {} differing from the other hits; distances differ by up to {:.1e} of themselves",
-                counted(agreement.differing_hits, "hit"),
+                "         beside the other hits: {} hit or missed by one only, {} elsewhere by more than 1/1000, the rest within {:.1e}",
+                counted(agreement.differing_hits, "ray"),
+                counted(agreement.far_hits, "hit"),
                 agreement.largest_relative_difference,
             );
         }
