@@ -16,45 +16,50 @@ SMALL = 0.005
 HASH = re.compile(r"::h[0-9a-f]{16}$")
 NAME = re.compile(r"\((\d+)\)(?: (.*))?")
 PATH = re.compile(r"^<*&?(?:mut |dyn )?([a-z_0-9]+(?:::[a-z_0-9]+)*)")
+SOURCE = re.compile(r"crates/(ambray\w*)/src/(\w+)")
 TREES = "ambray_cpu::bvh", "obvhs"
 
 
-def self_cost(path):
-    """Instructions of each function itself, without those it calls. Inlined code counts for the function it went into."""
-    cost, names, function, skip = Counter(), {}, None, False
+def by_module(path):
+    """Instructions of each module itself, without what it calls. Inlined code counts for the function it went into."""
+    cost, names, files, skip = Counter(), {}, {}, False
+    function = file = ""
+
+    def named(known, text):
+        number, name = NAME.match(text).groups()
+        if name:
+            known[number] = name
+        return known[number]
+
     for line in path.read_text(errors="replace").splitlines():
-        if line.startswith("fn="):
-            number, name = NAME.match(line[3:]).groups()
-            if name:
-                names[number] = name
-            function = names[number]
-        elif line.startswith("cfn="):
-            number, name = NAME.match(line[4:]).groups()
-            if name:
-                names[number] = name
-        elif line.startswith("calls="):
+        key, _, value = line.partition("=")
+        if key == "fn":
+            function = named(names, value)
+        elif key == "cfn":
+            named(names, value)
+        elif key in ("fl", "fi", "fe"):
+            file = named(files, value)
+        elif key in ("cfi", "cfl"):
+            named(files, value)
+        elif key == "calls":
             skip = True  # the next line is what the called function took
         elif line[:1] in "0123456789+-*" and line:
             if not skip:
-                cost[function] += int(line.split()[-1])
+                cost[module(function, file)] += int(line.split()[-1])
             skip = False
     return cost
 
 
-def module(name):
-    """Crate and module of a function; other crates and the system as one."""
-    found = PATH.match(HASH.sub("", name))
+def module(function, file):
+    """Crate and module of a function. One of the standard library may be nothing but a closure: its lines tell then."""
+    found = PATH.match(HASH.sub("", function))
     parts = found.group(1).split("::") if found else []
-    if not parts or not parts[0].startswith("ambray"):
-        return "obvhs" if parts[:1] == ["obvhs"] else "others"
-    return "::".join(parts[:2])
-
-
-def by_module(cost):
-    modules = Counter()
-    for name, count in cost.items():
-        modules[module(name)] += count
-    return modules
+    if parts[:1] == ["obvhs"]:
+        return "obvhs"
+    if parts and parts[0].startswith("ambray"):
+        return "::".join(parts[:2])
+    source = SOURCE.search(file)
+    return "::".join(source.groups()) if source else "others"
 
 
 def counted(modules):
@@ -78,7 +83,7 @@ def compare(what, now, then):
 
 def main():
     one, three, record, rustc, command, mode = sys.argv[1:7]
-    one, three = by_module(self_cost(Path(one))), by_module(self_cost(Path(three)))
+    one, three = by_module(Path(one)), by_module(Path(three))
     frame = Counter({name: (three[name] - one[name]) // 2 for name in three if three[name] > one[name]})
     trees = Counter({name: one[name] - frame[name] for name in TREES if one[name]})
     now = {"command": f"ambray {command}", "rustc": rustc, "frame": counted(frame), "trees": counted(trees)}

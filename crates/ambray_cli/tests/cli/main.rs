@@ -12,6 +12,7 @@ mod interrupt;
 mod options;
 mod outputs;
 mod query;
+mod rays;
 mod sequence;
 mod video;
 
