@@ -7,6 +7,8 @@ use clap::{Args, ValueEnum};
 
 use super::whole;
 
+/// Rounds unless `--rounds` says otherwise.
+const ROUNDS: u32 = 7;
 /// Builds of each kind of tree unless `--builds` says otherwise.
 const BUILDS: u32 = 3;
 
@@ -17,9 +19,9 @@ pub struct RaysArgs {
     /// format of docs/performance.md; without one those that are there are measured
     #[arg(long, value_name = "FOLDER")]
     pub rays: Option<PathBuf>,
-    /// Rounds of --rays, in each of which everything is measured in turn; 0 traces nothing
-    #[arg(long, value_name = "N", default_value_t = 7, value_parser = |text: &str| whole::<u32>(text, 0, 10_000))]
-    pub rounds: u32,
+    /// Rounds of --rays, in each of which everything is measured in turn; 0 traces nothing [default: 7]
+    #[arg(long, value_name = "N", value_parser = |text: &str| whole::<u32>(text, 0, 10_000))]
+    pub rounds: Option<u32>,
     /// How often the trees of --rays are built to measure that, each quality in turn; 0 skips it [default: 3, or 0 with
     /// --rounds 0]
     #[arg(long, value_name = "N", value_parser = |text: &str| whole::<u32>(text, 0, 1000))]
@@ -27,11 +29,11 @@ pub struct RaysArgs {
     /// Files of --rays to measure, by their names without .rays, separated by commas [default: all]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub batches: Vec<String>,
-    /// Effort spent on the trees of --rays, several separated by commas: each is measured
-    #[arg(long, value_enum, value_name = "QUALITY", value_delimiter = ',', default_value = "balanced")]
+    /// Effort spent on the trees of --rays, several separated by commas: each is measured [default: balanced]
+    #[arg(long, value_enum, value_name = "QUALITY", value_delimiter = ',')]
     pub quality: Vec<Quality>,
-    /// Triangles to write with --rays: each is cut in four, the surface staying the same, until there are so many; of more,
-    /// the largest are kept. The rays are those of the scene as it is
+    /// Triangles of --rays, to write with a SCENE, else only to measure: each is cut in four, the surface staying the same,
+    /// until there are so many; of more, the largest are kept. The rays are those of the scene as it is
     #[arg(long, value_name = "N", value_parser = |text: &str| whole::<u64>(text, 1, 1 << 30))]
     pub triangles: Option<u64>,
     /// Write the hits of --rays to this folder, one file for each of rays
@@ -43,16 +45,30 @@ pub struct RaysArgs {
 }
 
 impl RaysArgs {
+    /// Rounds to measure.
+    #[must_use]
+    pub fn rounds(&self) -> u32 {
+        self.rounds.unwrap_or(ROUNDS)
+    }
+
     /// Builds to measure of each kind.
     #[must_use]
     pub fn builds(&self) -> u32 {
-        self.builds.unwrap_or(if self.rounds == 0 { 0 } else { BUILDS })
+        self.builds.unwrap_or(if self.rounds() == 0 { 0 } else { BUILDS })
+    }
+
+    /// Trees to measure.
+    #[must_use]
+    pub fn qualities(&self) -> &[Quality] {
+        if self.quality.is_empty() { &[Quality::Balanced] } else { &self.quality }
     }
 
     /// The first option that means nothing without `--rays`.
     #[must_use]
     pub fn needs_rays(&self) -> Option<&'static str> {
         let given = [
+            ("--rounds", self.rounds.is_some()),
+            ("--quality", !self.quality.is_empty()),
             ("--builds", self.builds.is_some()),
             ("--batches", !self.batches.is_empty()),
             ("--triangles", self.triangles.is_some()),

@@ -126,7 +126,6 @@ fn the_report_for_people_has_a_table_for_each_file() {
 fn hits_are_written_and_compared() {
     let bench = Bench::new();
     bench.run(&WRITE).succeeds();
-    fs::create_dir(bench.path("hits")).expect("folder");
     bench.run(&with(&MEASURE, &["--write-hits=hits", "--quiet"])).succeeds();
     let hits = bench.read("hits/ambient.hits");
     assert_eq!((&hits[..4], word(&hits, 0)), (&b"HITS"[..], 1));
@@ -159,6 +158,10 @@ fn the_same_surface_in_more_triangles_has_the_same_rays() {
     assert_eq!(word(&bench.read("rays/scene.tris"), 2), 100, "64 triangles, 12 of them cut in four");
     assert_eq!(bench.read("rays/ambient.rays"), rays);
     bench.run(&with(&WRITE, &["--triangles=1"])).succeeds();
+    assert_eq!(word(&bench.read("rays/scene.tris"), 2), 1);
+    // Without a scene the files stay as they are.
+    let run = bench.run(&with(&MEASURE, &["--triangles=10", "--batches=ambient", "--json"])).succeeds();
+    assert_eq!(json(&run.stdout)["triangles"], 10);
     assert_eq!(word(&bench.read("rays/scene.tris"), 2), 1);
 }
 

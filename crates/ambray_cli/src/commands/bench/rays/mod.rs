@@ -35,11 +35,11 @@ pub(super) fn run(
         [scene] => Some(dump::write(scene, &folder, args, settings, options)?),
         [_, second, ..] => bail!("--rays: the scene {} is one too many", second.display()),
     };
-    let mut report = RaysReport::new(Machine::detect(), &folder, threads(args), args.rays.rounds, source);
+    let mut report = RaysReport::new(Machine::detect(), &folder, threads(args), args.rays.rounds(), source);
     if let (Some(source), true) = (&report.source, says(args)) {
         terminal::print(&source.text(settings))?;
     }
-    if args.rays.rounds > 0 || args.rays.builds() > 0 {
+    if args.rays.rounds() > 0 || args.rays.builds() > 0 {
         measure(args, &folder, &mut report)?;
     }
     json(&report)
@@ -48,8 +48,20 @@ pub(super) fn run(
 fn measure(args: &BenchArgs, folder: &RaysFolder, report: &mut RaysReport) -> anyhow::Result<()> {
     let _graceful = signals::Graceful::begin();
     // Before any work: names may be wrong.
-    let names = if args.rays.rounds > 0 { folder.batches(&args.rays.batches)? } else { Vec::new() };
-    let scene = folder.triangles()?.into_scene();
+    let names = if args.rays.rounds() > 0 { folder.batches(&args.rays.batches)? } else { Vec::new() };
+    if let Some(folder) = &args.rays.write_hits {
+        RaysFolder::new(folder).prepare()?;
+    }
+    if let Some(folder) = &args.rays.check_hits {
+        names.iter().try_for_each(|name| RaysFolder::new(folder).hits(name).map(drop))?;
+    }
+    let triangles = folder.triangles()?;
+    let triangles = match args.rays.triangles {
+        // Else they were written so.
+        Some(count) if args.scenes.is_empty() => triangles.resized(usize::try_from(count)?),
+        _ => triangles,
+    };
+    let scene = triangles.into_scene();
     report.triangles = scene.triangle_count();
     let (isas, builds) = (isas(args), args.rays.builds());
     if builds > 0 {
@@ -62,7 +74,7 @@ fn measure(args: &BenchArgs, folder: &RaysFolder, report: &mut RaysReport) -> an
     if names.is_empty() {
         return Ok(());
     }
-    let contenders = measure::contenders(&scene, &isas, &args.rays.quality, report.threads)?;
+    let contenders = measure::contenders(&scene, &isas, args.rays.qualities(), report.threads)?;
     drop(scene);
     for name in &names {
         let batch = measure_batch(args, folder, name, &contenders, report.threads)?;
@@ -83,7 +95,7 @@ fn measure_batch(
 ) -> anyhow::Result<BatchReport> {
     let batch = folder.batch(name)?;
     let progress = Progress::new("measuring", args.run.quiet);
-    let (rates, hits) = measure::batch(&batch, contenders, threads, args.rays.rounds, &progress)?;
+    let (rates, hits) = measure::batch(&batch, contenders, threads, args.rays.rounds(), &progress)?;
     if let Some(folder) = &args.rays.write_hits {
         RaysFolder::new(folder).write_hits(name, &hits)?;
     }
@@ -108,7 +120,6 @@ fn check(args: &BenchArgs) -> anyhow::Result<()> {
         bail!("{name} is not allowed with --rays: it is about whole frames");
     }
     let of_scenes = [
-        ("--triangles", args.rays.triangles.is_some()),
         ("--opaque", args.kernels.opaque),
         ("--gltf-scene", args.gltf_scene.is_some()),
         ("--preset", args.settings.preset.is_some()),
