@@ -1,7 +1,7 @@
 //! The folder with the files of `--rays`.
 
 use std::{
-    fs,
+    fs, io,
     path::{Path, PathBuf},
 };
 
@@ -13,6 +13,8 @@ use ambray_files::{
     with_hint,
 };
 use anyhow::{Context as _, anyhow, bail};
+
+const HINT: &str = "name a scene to write its triangles and rays to the folder";
 
 /// Files of triangles, rays and hits.
 #[derive(Clone, Debug)]
@@ -46,15 +48,7 @@ impl RaysFolder {
 
     /// The triangles.
     pub(super) fn triangles(&self) -> anyhow::Result<Triangles> {
-        read_triangles(&self.triangles_file()).map_err(|error| {
-            let is_missing = error.chain().any(|cause| {
-                cause
-                    .downcast_ref()
-                    .is_some_and(|io: &std::io::Error| io.kind() == std::io::ErrorKind::NotFound)
-            });
-            let hint = "name a scene to write its triangles and rays to the folder";
-            if is_missing { with_hint(error, hint) } else { error }
-        })
+        read_triangles(&self.triangles_file()).map_err(hinted)
     }
 
     /// The rays called `name`.
@@ -66,7 +60,7 @@ impl RaysFolder {
     pub(super) fn batches(&self, asked: &[String]) -> anyhow::Result<Vec<String>> {
         let context = || format!("--rays {}", self.path.display());
         let mut names = Vec::new();
-        for entry in fs::read_dir(&self.path).with_context(context)? {
+        for entry in fs::read_dir(&self.path).with_context(context).map_err(hinted)? {
             let path = entry.with_context(context)?.path();
             if path.extension().is_some_and(|extension| extension == "rays")
                 && let Some(name) = path.file_stem().and_then(|name| name.to_str())
@@ -77,7 +71,7 @@ impl RaysFolder {
         names.sort();
         if names.is_empty() {
             let error = anyhow!("--rays {}: there are no files of rays", self.path.display());
-            return Err(with_hint(error, "name a scene to write its triangles and rays to the folder"));
+            return Err(with_hint(error, HINT));
         }
         match asked.iter().find(|name| !names.contains(name)) {
             Some(name) => bail!("--batches {name} is not allowed: there are {}", names.join(", ")),
@@ -105,4 +99,12 @@ impl RaysFolder {
     fn file(&self, name: &str, extension: &str) -> PathBuf {
         self.path.join(format!("{name}.{extension}"))
     }
+}
+
+/// Adds advice to what happens where nothing was written yet.
+fn hinted(error: anyhow::Error) -> anyhow::Error {
+    let is_missing = |cause: &(dyn std::error::Error + 'static)| {
+        cause.downcast_ref().is_some_and(|io: &io::Error| io.kind() == io::ErrorKind::NotFound)
+    };
+    if error.chain().any(is_missing) { with_hint(error, HINT) } else { error }
 }
