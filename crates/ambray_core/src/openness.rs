@@ -49,6 +49,18 @@ impl Openness {
         }
     }
 
+    /// [`at`](Self::at) of each of some distances, side by side where it takes no more than a division.
+    #[inline(always)]
+    #[must_use]
+    pub fn at_each<const L: usize>(&self, distances: &[f32; L]) -> [f32; L] {
+        match *self {
+            Self::Power { radius, exponent: 1.0 } => {
+                distances.map(|d| if d >= radius { 1.0 } else { d / radius })
+            }
+            _ => distances.map(|d| self.at(d)),
+        }
+    }
+
     /// Distance from which μ is 1: the `t_max` of ambient rays. Infinite for [`Openness::Exponential`].
     #[must_use]
     pub const fn reach(&self) -> f32 {
@@ -81,6 +93,8 @@ mod tests {
             let values: Vec<f32> = (0..400).map(|i| kind.at(i as f32 * 0.01)).collect();
             assert!(values.windows(2).all(|w| w[0] <= w[1]), "{kind:?} decreases");
             assert!(values.iter().all(|v| (0.0..=1.0).contains(v)), "{kind:?} leaves [0, 1]");
+            let distances = [0.0, 0.3, 1.7, 2.0, 9.0, f32::INFINITY];
+            assert_eq!(kind.at_each(&distances), distances.map(|d| kind.at(d)), "{kind:?}");
         }
     }
 }

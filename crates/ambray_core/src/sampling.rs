@@ -202,17 +202,24 @@ impl SampleSets {
         self.spp
     }
 
+    /// Direction number `j` < N of all pixels of a class, where they share it.
+    #[inline]
+    #[must_use]
+    pub fn shared(&self, class: u8, j: u32) -> Option<SampleDirection> {
+        match self.sampling {
+            Sampling::Interleaved => Some(self.table[(u32::from(class) * self.spp + j) as usize]),
+            Sampling::Same => Some(self.table[j as usize]),
+            Sampling::Random | Sampling::Independent => None,
+        }
+    }
+
     /// Direction number `j` < N of the pixel.
     #[must_use]
     pub fn direction(&self, pixel: PixelKey, j: u32) -> SampleDirection {
-        match self.sampling {
-            Sampling::Interleaved => self.table[(u32::from(pixel.class) * self.spp + j) as usize],
-            Sampling::Same => self.table[j as usize],
-            Sampling::Random => {
-                SampleDirection::from_bits(sequence_point(self.sequence, j, seed_pair(pixel.hash)))
-            }
+        self.shared(pixel.class, j).unwrap_or_else(|| match self.sampling {
             Sampling::Independent => SampleDirection::from_bits(seed_pair(pixel.ray_seed(j))),
-        }
+            _ => SampleDirection::from_bits(sequence_point(self.sequence, j, seed_pair(pixel.hash))),
+        })
     }
 }
 

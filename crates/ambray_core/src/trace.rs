@@ -108,4 +108,13 @@ pub trait World: Trace {
     fn motion(&self, instance: u32) -> Motion;
     /// Surface at the `hit` of `ray`, averaged over a footprint of `width` scene units where textures allow.
     fn diffuse_at(&self, ray: &Ray, hit: &Hit, width: f32) -> Diffuse;
+    /// Albedos at the `hits` of `rays`, each averaged over a footprint of `cone` times its distance; zero for misses. The
+    /// slices have equal length.
+    #[inline]
+    fn albedos_at(&self, rays: &[Ray], hits: &[Hit], cone: f32, albedos: &mut [Vec3]) {
+        for ((ray, hit), albedo) in rays.iter().zip(hits).zip(albedos) {
+            let is_hit = hit.is_hit();
+            *albedo = if is_hit { self.diffuse_at(ray, hit, hit.t * cone).albedo } else { Vec3::ZERO };
+        }
+    }
 }

@@ -1,5 +1,7 @@
 //! From a hit to the attributes of the surface there.
 
+mod albedo;
+
 use std::sync::Arc;
 
 use ambray_core::trace::{Diffuse, Hit, Ray, alpha_threshold};
@@ -7,6 +9,8 @@ use glam::{Affine3A, Mat3A, Vec2, Vec3, Vec3A, Vec4};
 
 use crate::implicit::{ShapeFrame, ShapePoint};
 use crate::{AlphaMode, Instance, Material, MaterialKind, Mesh, Motion, Scene, ShapeInstance, TextureRef};
+
+use albedo::Albedos;
 
 /// Answers questions about points on the surfaces of a scene.
 ///
@@ -20,6 +24,8 @@ pub struct Surfaces {
     shape_frames: Vec<ShapeFrame>,
     /// One a mesh: whether all of it is there for all rays.
     opaque: Arc<[bool]>,
+    /// What does not move has the same albedos at all poses.
+    albedos: Arc<Albedos>,
 }
 
 /// What placing an instance does to directions.
@@ -31,6 +37,60 @@ struct Frame {
     magnitude: Affine3A,
     /// -1 where the placement mirrors, which turns the winding of triangles around, else 1.
     side: f32,
+}
+
+impl Frame {
+    fn new(instance: &Instance) -> Self {
+        let m = instance.world_from_object.matrix3;
+        let side = if m.determinant() < 0.0 { -1.0 } else { 1.0 };
+        let magnitude = Affine3A {
+            matrix3: Mat3A::from_cols(m.x_axis.abs(), m.y_axis.abs(), m.z_axis.abs()),
+            translation: instance.world_from_object.translation.abs(),
+        };
+        Self { normal_from_object: normal_matrix(m), magnitude, side }
+    }
+}
+
+fn shape_frames(scene: &Scene) -> Vec<ShapeFrame> {
+    let frame = |i: &ShapeInstance| ShapeFrame::new(i, &scene.shapes[i.shape as usize]);
+    scene.shape_instances.iter().map(frame).collect()
+}
+
+/// A triangle in the world.
+#[derive(Clone, Copy, Debug)]
+struct Placed {
+    /// World space.
+    points: [Vec3A; 3],
+    /// Largest magnitude of a component of an edge.
+    scale: f32,
+    /// Normal of the triangle whose edges are those over `scale`, as long as twice its area.
+    scaled_normal: Vec3A,
+    length: f32,
+}
+
+impl Placed {
+    #[inline]
+    fn new(instance: &Instance, mesh: &Mesh, corners: [u32; 3]) -> Self {
+        let points =
+            corners.map(|i| instance.world_from_object.transform_point3a(mesh.positions[i as usize].into()));
+        let (e1, e2) = (points[1] - points[0], points[2] - points[0]);
+        // Edges of tiny triangles would vanish when multiplied; scaled to unit size they do not.
+        let scale = e1.abs().max(e2.abs()).max_element();
+        let scaled_normal = (e1 / scale).cross(e2 / scale);
+        Self { points, scale, scaled_normal, length: scaled_normal.length() }
+    }
+
+    /// Unit normal on the `side` of the winding; not finite where the triangle has no area.
+    #[inline]
+    fn normal(&self, side: f32) -> Vec3 {
+        (self.scaled_normal * (side / self.length)).into()
+    }
+
+    /// Root of twice the area.
+    #[inline]
+    fn edge(&self) -> f32 {
+        self.scale * self.length.sqrt()
+    }
 }
 
 /// A point on a surface as a camera sees it. Positions and directions are in world space, colours linear RGB.
@@ -112,30 +172,27 @@ impl Surfaces {
     /// If the scene's indices refer to what is not there.
     #[must_use]
     pub fn new(scene: Arc<Scene>) -> Self {
-        let opaque = is_opaque_by_mesh(&scene);
-        Self::with_opaque(scene, opaque.into())
+        let mut surfaces = Self {
+            frames: scene.instances.iter().map(Frame::new).collect(),
+            shape_frames: shape_frames(&scene),
+            opaque: is_opaque_by_mesh(&scene).into(),
+            albedos: Arc::default(),
+            scene,
+        };
+        surfaces.albedos = Arc::new(Albedos::new(&surfaces));
+        surfaces
     }
 
     /// The same surfaces where `scene` has them: the same scene at another pose. Much faster than [`new`](Self::new).
     #[must_use]
     pub fn moved_to(&self, scene: Arc<Scene>) -> Self {
-        Self::with_opaque(scene, Arc::clone(&self.opaque))
-    }
-
-    fn with_opaque(scene: Arc<Scene>, opaque: Arc<[bool]>) -> Self {
-        let frame = |instance: &Instance| {
-            let m = instance.world_from_object.matrix3;
-            let side = if m.determinant() < 0.0 { -1.0 } else { 1.0 };
-            let magnitude = Affine3A {
-                matrix3: Mat3A::from_cols(m.x_axis.abs(), m.y_axis.abs(), m.z_axis.abs()),
-                translation: instance.world_from_object.translation.abs(),
-            };
-            Frame { normal_from_object: normal_matrix(m), magnitude, side }
-        };
-        let frames = scene.instances.iter().map(frame).collect();
-        let shape_frame = |i: &ShapeInstance| ShapeFrame::new(i, &scene.shapes[i.shape as usize]);
-        let shape_frames = scene.shape_instances.iter().map(shape_frame).collect();
-        Self { scene, frames, shape_frames, opaque }
+        Self {
+            frames: scene.instances.iter().map(Frame::new).collect(),
+            shape_frames: shape_frames(&scene),
+            opaque: Arc::clone(&self.opaque),
+            albedos: Arc::clone(&self.albedos),
+            scene,
+        }
     }
 
     /// The scene that was given.
@@ -305,13 +362,7 @@ impl<'s> At<'s> {
             (&scene.instances[hit.instance as usize], &surfaces.frames[hit.instance as usize]);
         let mesh = &scene.meshes[instance.mesh as usize];
         let corners = mesh.triangles[hit.triangle as usize];
-        let points =
-            corners.map(|i| instance.world_from_object.transform_point3a(mesh.positions[i as usize].into()));
-        let (e1, e2) = (points[1] - points[0], points[2] - points[0]);
-        // Edges of tiny triangles would vanish when multiplied; scaled to unit size they do not.
-        let scale = e1.abs().max(e2.abs()).max_element();
-        let normal = (e1 / scale).cross(e2 / scale);
-        let length = normal.length();
+        let placed = Placed::new(instance, mesh, corners);
         let mut at = Self {
             scene,
             frame,
@@ -319,10 +370,10 @@ impl<'s> At<'s> {
             mesh,
             material: &scene.materials[mesh.material as usize],
             corners,
-            points,
+            points: placed.points,
             weights: [1.0 - hit.u - hit.v, hit.u, hit.v],
-            geometric_normal: (normal * (frame.side / length)).into(),
-            relative_width: width / (scale * length.sqrt()),
+            geometric_normal: placed.normal(frame.side),
+            relative_width: width / placed.edge(),
         };
         // A triangle without area has no normal of its own.
         if !at.geometric_normal.is_finite() {
@@ -424,11 +475,9 @@ impl<'s> At<'s> {
     /// The texture's value over the footprint.
     fn read(&self, texture: &TextureRef) -> Vec4 {
         let uvs = mesh_uvs(self.mesh, texture, self.corners).map(|uv| texture.transform.transform_point2(uv));
-        // Lengths grow from the surface to the texture by the square root of what areas grow by.
-        let uv_area = (uvs[1] - uvs[0]).perp_dot(uvs[2] - uvs[0]).abs();
         let read = self.scene.textures[texture.texture as usize];
         let image = &self.scene.images[read.image as usize];
-        read.sampler.sample(image, weigh(uvs, self.weights), self.relative_width * uv_area.sqrt())
+        read.sampler.sample(image, weigh(uvs, self.weights), self.relative_width * uv_edge(uvs))
     }
 }
 
@@ -449,6 +498,13 @@ fn mesh_uvs(mesh: &Mesh, texture: &TextureRef, corners: [u32; 3]) -> [Vec2; 3] {
     }
 }
 
+/// Root of twice the area of a triangle in a texture: lengths grow from a surface to its texture by the root of what areas
+/// grow by.
+fn uv_edge([a, b, c]: [Vec2; 3]) -> f32 {
+    (b - a).perp_dot(c - a).abs().sqrt()
+}
+
+#[inline(always)]
 fn weigh([a, b, c]: [Vec2; 3], weights: [f32; 3]) -> Vec2 {
     a * weights[0] + b * weights[1] + c * weights[2]
 }

@@ -1,8 +1,11 @@
 //! Images, samplers and texture lookups.
 
-use glam::{Vec2, Vec4};
+mod lookup;
+mod prepared;
 
 use crate::{mip, srgb};
+
+pub(crate) use prepared::PreparedTexture;
 
 /// A decoded image with its mip chain, RGBA with 8 bits a channel.
 #[derive(Clone, Debug, PartialEq)]
@@ -107,143 +110,22 @@ impl Image {
         f32::from(least.unwrap_or(255)) / 255.0
     }
 
+    /// Root of the number of texels of the full image: footprints are roots of areas.
+    fn texels_across(&self) -> f32 {
+        let full = &self.levels[0];
+        (full.width as f32 * full.height as f32).sqrt()
+    }
+
     /// What the bytes of the colour channels mean.
     fn decoder(&self) -> &'static [f32; 256] {
         if self.srgb { srgb::decoded() } else { &srgb::UNIT }
     }
 }
 
-impl Sampler {
-    /// Linear RGBA at `uv`, for a footprint of `width` texture units (1 = the whole image; 0 reads level 0).
-    ///
-    /// Texel (i, j) has its centre at (i + ½, j + ½) / size. The mip level is log₂(`width` · √(texels of the image)); at level 0 and
-    /// below the image is magnified. Each texel is decoded before it is filtered. A `uv` that is not finite reads as 0.
-    #[must_use]
-    pub fn sample(&self, image: &Image, uv: Vec2, width: f32) -> Vec4 {
-        let full = &image.levels[0];
-        // The width is the root of an area of the texture, so it counts texels by the root of theirs.
-        let level = libm::log2f(width * (full.width as f32 * full.height as f32).sqrt());
-        // The logarithm of negative widths is NaN.
-        if level.is_nan() || level <= 0.0 {
-            return self.at_level(image, 0, self.mag, uv);
-        }
-        let last = image.levels.len() - 1;
-        let level = level.min(last as f32);
-        match self.mip {
-            None => self.at_level(image, 0, self.min, uv),
-            Some(Filter::Nearest) => self.at_level(image, (level + 0.5) as usize, self.min, uv),
-            Some(Filter::Linear) => {
-                let (lower, share) = (level as usize, level.fract());
-                let fine = self.at_level(image, lower, self.min, uv);
-                if share == 0.0 {
-                    return fine;
-                }
-                fine.lerp(self.at_level(image, (lower + 1).min(last), self.min, uv), share)
-            }
-        }
-    }
-
-    /// Alpha at `uv` of the full image, magnified: what a ray meets when it tests whether something is there.
-    #[must_use]
-    pub fn alpha_at(&self, image: &Image, uv: Vec2) -> f32 {
-        let level = &image.levels[0];
-        let alpha =
-            |x: usize, y: usize| srgb::UNIT[usize::from(level.texels[y * level.width as usize + x][3])];
-        let [u, v] = self.taps(level, self.mag, uv);
-        let row = |y: usize| {
-            if u.share == 0.0 {
-                alpha(u.first, y)
-            } else {
-                lerp(alpha(u.first, y), alpha(u.second, y), u.share)
-            }
-        };
-        if v.share == 0.0 { row(v.first) } else { lerp(row(v.first), row(v.second), v.share) }
-    }
-
-    fn at_level(&self, image: &Image, level: usize, filter: Filter, uv: Vec2) -> Vec4 {
-        let (level, decode) = (&image.levels[level], image.decoder());
-        let [u, v] = self.taps(level, filter, uv);
-        let texel = |x: usize, y: usize| {
-            let [r, g, b, a] = level.texels[y * level.width as usize + x].map(usize::from);
-            Vec4::new(decode[r], decode[g], decode[b], srgb::UNIT[a])
-        };
-        if filter == Filter::Nearest {
-            return texel(u.first, v.first);
-        }
-        let upper = texel(u.first, v.first).lerp(texel(u.second, v.first), u.share);
-        let lower = texel(u.first, v.second).lerp(texel(u.second, v.second), u.share);
-        upper.lerp(lower, v.share)
-    }
-
-    fn taps(&self, level: &ImageLevel, filter: Filter, uv: Vec2) -> [Taps; 2] {
-        [
-            Taps::new(uv.x, level.width, self.wrap[0], filter),
-            Taps::new(uv.y, level.height, self.wrap[1], filter),
-        ]
-    }
-}
-
-fn lerp(a: f32, b: f32, share: f32) -> f32 {
-    a + (b - a) * share
-}
-
-/// The two texels that a coordinate falls between along one axis.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Taps {
-    first: usize,
-    second: usize,
-    /// Weight of `second`.
-    share: f32,
-}
-
-impl Taps {
-    fn new(coordinate: f32, size: u32, wrap: Wrap, filter: Filter) -> Self {
-        let x = wrap.reduce(coordinate) * size as f32;
-        match filter {
-            Filter::Nearest => {
-                let texel = wrap.texel(x.floor() as i64, size);
-                Self { first: texel, second: texel, share: 0.0 }
-            }
-            Filter::Linear => {
-                let left = (x - 0.5).floor();
-                let (first, second) = (wrap.texel(left as i64, size), wrap.texel(left as i64 + 1, size));
-                Self { first, second, share: x - 0.5 - left }
-            }
-        }
-    }
-}
-
-impl Wrap {
-    /// The coordinate of the same texel near the unit interval, so that huge ones keep their integer part exact.
-    fn reduce(self, coordinate: f32) -> f32 {
-        if !coordinate.is_finite() {
-            return 0.0;
-        }
-        match self {
-            Self::Repeat => coordinate - coordinate.floor(),
-            Self::Mirror => coordinate - 2.0 * (0.5 * coordinate).floor(),
-            Self::Clamp => coordinate.clamp(-1.0, 2.0),
-        }
-    }
-
-    /// Texel that stands for the one at `index`, which may lie outside the image.
-    fn texel(self, index: i64, size: u32) -> usize {
-        let size = i64::from(size);
-        let inside = match self {
-            Self::Repeat => index.rem_euclid(size),
-            Self::Mirror => {
-                let index = index.rem_euclid(2 * size);
-                if index < size { index } else { 2 * size - 1 - index }
-            }
-            Self::Clamp => index.clamp(0, size - 1),
-        };
-        inside as usize
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::{Vec2, Vec4};
 
     /// A row of linear greys in red; the other channels are 0 and alpha 255.
     fn row(reds: &[u8]) -> Image {

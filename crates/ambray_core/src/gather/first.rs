@@ -1,11 +1,18 @@
 //! First batch: N rays from each point over the hemisphere.
 
+use std::array::from_fn;
+
 use crate::{
     basis::Basis,
+    sampling::{SampleDirection, pcg},
     trace::{Hit, Motion, Ray, World},
 };
 
-use super::{GatherParams, Gathered, Sample, ShadedPoint, radiance::RadianceScratch};
+use super::{
+    GatherParams, Gathered, ShadedPoint,
+    radiance::RadianceScratch,
+    samples::{Run, Samples, group, group_mut, in_groups},
+};
 
 use glam::Vec3;
 
@@ -21,22 +28,40 @@ fn may_change(world: &impl World, receiver: u32, occluder: u32) -> bool {
 /// The rays of a batch of points and what became of them.
 #[derive(Debug, Default)]
 pub(super) struct FirstBatch {
-    /// N samples of each point, point after point.
-    samples: Vec<Sample>,
+    pub(super) samples: Samples,
     pub(super) rays: Vec<Ray>,
-    pub(super) hits: Vec<Hit>,
+    /// At least as many as rays.
+    hits: Vec<Hit>,
     /// Sample that each ray belongs to.
     pub(super) slots: Vec<u32>,
-    /// Basis and ray origin of each point of a run.
-    starts: Vec<(Basis, Vec3)>,
+    /// Point that each ray starts from.
+    owners: Vec<u32>,
+    albedos: Vec<Vec3>,
+    starts: Starts,
+}
+
+/// Where the rays of the points of a run start, as structure of arrays.
+#[derive(Debug, Default)]
+struct Starts {
+    /// Bases: tangent, bitangent, normal.
+    basis: [[Vec<f32>; 3]; 3],
+    /// Geometric normals.
+    horizon: [Vec<f32>; 3],
+    origins: Vec<Vec3>,
+    hashes: Vec<u32>,
+    /// Directions of a sample, where each point has its own.
+    local: [Vec<f32>; 3],
+    /// Seeds of its rays.
+    seeds: Vec<u32>,
 }
 
 impl FirstBatch {
-    /// The N samples of each point, point after point.
-    pub(super) fn samples(&self) -> &[Sample] {
-        &self.samples
+    /// The hits of the rays.
+    pub(super) fn hits(&self) -> &[Hit] {
+        &self.hits[..self.rays.len()]
     }
 
+    #[inline(always)]
     pub(super) fn trace(
         &mut self,
         world: &impl World,
@@ -45,75 +70,193 @@ impl FirstBatch {
         radiance: &mut RadianceScratch,
         out: &mut [Gathered],
     ) {
-        self.make_rays(params, points, out);
-        self.hits.clear();
-        self.hits.resize(self.rays.len(), Hit::MISS);
-        world.closest_hits(&self.rays, &mut self.hits);
+        self.make_rays(params, points);
+        // Tracers write every answer, so that old ones need not be cleared.
+        if self.hits.len() < self.rays.len() {
+            self.hits.resize(self.rays.len(), Hit::MISS);
+        }
+        let hits = &mut self.hits[..self.rays.len()];
+        world.closest_hits(&self.rays, hits);
+        for (hit, &slot) in hits.iter().zip(&self.slots) {
+            self.samples.distance[slot as usize] = hit.t;
+        }
+        if params.temporal {
+            self.find_changing(world, points);
+        }
+        if params.needs_radiance() {
+            self.find_radiance(world, params, radiance, out);
+        }
+    }
 
-        let spp = params.samples.spp() as usize;
-        radiance.clear();
-        for ((ray, hit), &slot) in self.rays.iter().zip(&self.hits).zip(&self.slots) {
-            let gathered = &mut out[slot as usize / spp];
-            gathered.ambient_rays += 1;
+    /// Which of the hits may move against their points.
+    fn find_changing(&mut self, world: &impl World, points: &[ShadedPoint]) {
+        self.samples.changing.fill(0.0);
+        let hits = self.hits.iter().zip(&self.slots).zip(&self.owners);
+        for ((hit, &slot), &owner) in hits.filter(|((hit, _), _)| hit.is_hit()) {
+            let changes = may_change(world, points[owner as usize].instance, hit.instance);
+            self.samples.changing[slot as usize] = f32::from(u8::from(changes));
+        }
+    }
+
+    /// Radiance L_r of all hits.
+    #[inline(always)]
+    fn find_radiance(
+        &mut self,
+        world: &impl World,
+        params: &GatherParams<'_>,
+        scratch: &mut RadianceScratch,
+        out: &mut [Gathered],
+    ) {
+        let hits = &self.hits[..self.rays.len()];
+        let [red, green, blue] = &mut self.samples.radiance;
+        let mut write = |slot: u32, radiance: Vec3| {
+            let slot = slot as usize;
+            (red[slot], green[slot], blue[slot]) = radiance.into();
+        };
+        if let Some(factor) = params.albedo_factor() {
+            self.albedos.resize(hits.len(), Vec3::ZERO);
+            world.albedos_at(&self.rays, hits, params.cone_width(), &mut self.albedos);
+            for (&albedo, &slot) in self.albedos.iter().zip(&self.slots) {
+                write(slot, albedo * factor);
+            }
+            return;
+        }
+        scratch.clear();
+        for (i, (ray, hit)) in self.rays.iter().zip(hits).enumerate() {
             if hit.is_hit() {
-                gathered.ambient_hits += 1;
-                let sample = &mut self.samples[slot as usize];
-                sample.distance = hit.t;
-                if params.temporal {
-                    sample.changing = may_change(world, points[slot as usize / spp].instance, hit.instance);
-                }
-                if params.needs_radiance() {
-                    radiance.push(world, ray, hit, hit.t * params.cone_width(), slot);
-                }
+                scratch.push(world, ray, hit, hit.t * params.cone_width(), i as u32);
+            } else {
+                write(self.slots[i], Vec3::ZERO);
             }
         }
-        radiance.evaluate(world, params);
-        for (slot, radiance, shadow_rays) in radiance.results(params) {
-            self.samples[slot as usize].radiance = radiance;
-            out[slot as usize / spp].shadow_rays += shadow_rays;
+        scratch.evaluate(world, params);
+        for (ray, radiance, shadow_rays) in scratch.results(params) {
+            write(self.slots[ray as usize], radiance);
+            out[self.owners[ray as usize] as usize].shadow_rays += shadow_rays;
         }
     }
 
     /// Samples of all points, and rays for those above the geometric horizon.
-    fn make_rays(&mut self, params: &GatherParams<'_>, points: &[ShadedPoint], out: &[Gathered]) {
-        debug_assert_eq!(points.len(), out.len());
-        let spp = params.samples.spp() as usize;
-        let miss = Sample {
-            direction: Vec3::ZERO,
-            distance: f32::INFINITY,
-            radiance: Vec3::ZERO,
-            azimuth: 0.0,
-            changing: false,
-        };
-        self.samples.clear();
-        self.samples.resize(points.len() * spp, miss);
+    #[inline(always)]
+    fn make_rays(&mut self, params: &GatherParams<'_>, points: &[ShadedPoint]) {
+        self.samples.begin(params, points);
         self.rays.clear();
         self.slots.clear();
-        let t_max = params.openness.reach();
-        let mut first = 0;
-        for run in points.chunk_by(|a, b| a.key.class == b.key.class) {
-            self.starts.clear();
-            self.starts.extend(run.iter().map(|point| {
-                let origin = params.offset.apply(point.position, point.geometric_normal, point.reach);
-                (Basis::from_normal(point.normal), origin)
-            }));
-            for j in 0..spp {
-                for (i, (point, (basis, origin))) in run.iter().zip(&self.starts).enumerate() {
-                    let slot = (first + i) * spp + j;
-                    let sample = params.samples.direction(point.key, j as u32);
-                    let direction = basis.to_world(sample.local);
-                    // A direction below the geometric horizon is blocked at once, without a ray (spec §5).
-                    let above_horizon = direction.dot(point.geometric_normal) > 0.0;
-                    let distance = if above_horizon { f32::INFINITY } else { 0.0 };
-                    self.samples[slot] = Sample { direction, distance, azimuth: sample.azimuth, ..miss };
-                    if above_horizon {
-                        let seed = point.key.ray_seed(j as u32);
-                        self.rays.push(Ray { origin: *origin, t_max, direction, seed });
-                        self.slots.push(slot as u32);
-                    }
+        self.owners.clear();
+        // Room for all, so that the loop need not ask.
+        let most = self.samples.distance.len();
+        self.rays.reserve(most);
+        self.slots.reserve(most);
+        self.owners.reserve(most);
+        for i in 0..self.samples.runs.len() {
+            let run = self.samples.runs[i];
+            self.starts.begin(params, &points[run.range()]);
+            for j in 0..params.samples.spp() as usize {
+                self.make_sample(params, &points[run.range()], &run, j);
+            }
+        }
+    }
+
+    /// Sample `j` of all points of a `run`.
+    #[inline(always)]
+    fn make_sample(&mut self, params: &GatherParams<'_>, points: &[ShadedPoint], run: &Run, j: usize) {
+        let (samples, starts) = (&mut self.samples, &mut self.starts);
+        let slot = run.slot(0, j);
+        match params.samples.shared(points[0].key.class, j as u32) {
+            Some(shared) => {
+                in_groups!(run.points, make_group(samples, starts, slot, Local::Shared(shared.local)));
+                if let Some(azimuth) = samples.azimuth.get_mut(slot..slot + run.points) {
+                    azimuth.fill(shared.azimuth);
                 }
             }
-            first += run.len();
+            None => {
+                for (i, point) in points.iter().enumerate() {
+                    let SampleDirection { local, azimuth } = params.samples.direction(point.key, j as u32);
+                    (0..3).for_each(|axis| starts.local[axis][i] = local[axis]);
+                    if let Some(place) = samples.azimuth.get_mut(slot + i) {
+                        *place = azimuth;
+                    }
+                }
+                in_groups!(run.points, make_group(samples, starts, slot, Local::Own));
+            }
+        }
+        let salt = pcg(j as u32);
+        for (seed, hash) in starts.seeds.iter_mut().zip(&starts.hashes) {
+            *seed = pcg(hash ^ salt);
+        }
+        let t_max = params.openness.reach();
+        let (first, slot) = (run.first as u32, slot as u32);
+        let [x, y, z] = samples.direction.each_ref().map(|plane| &plane[slot as usize..][..run.points]);
+        let above = &samples.distance[slot as usize..][..run.points];
+        for i in 0..run.points {
+            if above[i] > 0.0 {
+                let direction = Vec3::new(x[i], y[i], z[i]);
+                self.rays.push(Ray { origin: starts.origins[i], t_max, direction, seed: starts.seeds[i] });
+                self.slots.push(slot + i as u32);
+                self.owners.push(first + i as u32);
+            }
+        }
+    }
+}
+
+/// Directions of a sample in the bases of the points.
+#[derive(Clone, Copy)]
+enum Local {
+    /// The same one for all points.
+    Shared(Vec3),
+    /// Those in [`Starts::local`].
+    Own,
+}
+
+/// Directions of the `L` points from `at` on, whose samples are at `slot` + `at`. Those below the geometric horizon are
+/// blocked at once, without a ray (spec §5).
+#[inline(always)]
+fn make_group<const L: usize>(at: usize, samples: &mut Samples, starts: &Starts, slot: usize, local: Local) {
+    let [x, y, z] = match local {
+        Local::Shared(local) => local.to_array().map(|x| [x; L]),
+        Local::Own => starts.local.each_ref().map(|plane| *group::<L>(plane, at)),
+    };
+    let direction: [[f32; L]; 3] = from_fn(|axis| {
+        let [tangent, bitangent, normal] = starts.basis.each_ref().map(|of| group::<L>(&of[axis], at));
+        from_fn(|lane| tangent[lane] * x[lane] + bitangent[lane] * y[lane] + normal[lane] * z[lane])
+    });
+    let horizon = starts.horizon.each_ref().map(|plane| group::<L>(plane, at));
+    let distance: [f32; L] = from_fn(|lane| {
+        let height = direction[0][lane] * horizon[0][lane]
+            + direction[1][lane] * horizon[1][lane]
+            + direction[2][lane] * horizon[2][lane];
+        if height > 0.0 { f32::INFINITY } else { 0.0 }
+    });
+    for axis in 0..3 {
+        *group_mut(&mut samples.direction[axis], slot + at) = direction[axis];
+        *group_mut(&mut samples.radiance[axis], slot + at) = [0.0; L];
+    }
+    *group_mut(&mut samples.distance, slot + at) = distance;
+}
+
+impl Starts {
+    /// Sets out from `points`.
+    #[inline(always)]
+    fn begin(&mut self, params: &GatherParams<'_>, points: &[ShadedPoint]) {
+        let planes = self.basis.iter_mut().flatten().chain(&mut self.horizon).chain(&mut self.local);
+        planes.for_each(|plane| plane.resize(points.len(), 0.0));
+        self.seeds.resize(points.len(), 0);
+        self.hashes.clear();
+        self.hashes.extend(points.iter().map(|point| point.key.hash));
+        self.origins.clear();
+        self.origins.extend(
+            points
+                .iter()
+                .map(|point| params.offset.apply(point.position, point.geometric_normal, point.reach)),
+        );
+        for (i, point) in points.iter().enumerate() {
+            let Basis { tangent, bitangent, normal } = Basis::from_normal(point.normal);
+            for axis in 0..3 {
+                self.basis[0][axis][i] = tangent[axis];
+                self.basis[1][axis][i] = bitangent[axis];
+                self.basis[2][axis][i] = normal[axis];
+                self.horizon[axis][i] = point.geometric_normal[axis];
+            }
         }
     }
 }

@@ -3,14 +3,16 @@
 //! Work is done in batches of points. The rays of a batch are ordered by sample class, then by direction, then by
 //! point: on a flat surface such a run of rays is parallel, which tracers of packets profit from.
 
+mod combine;
 mod first;
 mod radiance;
+mod samples;
 mod thin;
 mod witness;
 
 use std::f32::consts::PI;
 
-use glam::{DVec3, Vec3, Vec4, Vec4Swizzles};
+use glam::{Vec3, Vec4, Vec4Swizzles};
 
 use crate::{
     light::Light,
@@ -22,9 +24,10 @@ use crate::{
     view::View,
 };
 
+use combine::combine;
 use first::FirstBatch;
 use radiance::RadianceScratch;
-use thin::{Chords, SecondBatch};
+use thin::Chords;
 
 pub use witness::{Recorded, Recording, record};
 
@@ -126,21 +129,6 @@ impl Gathered {
     }
 }
 
-/// One ray of the first batch, after tracing.
-#[derive(Clone, Copy, Debug)]
-struct Sample {
-    /// World direction w_i.
-    direction: Vec3,
-    /// Distance d_i of the hit; infinite on a miss, 0 below the geometric horizon.
-    distance: f32,
-    /// Radiance L_r of the hit, 0 on a miss.
-    radiance: Vec3,
-    /// Azimuth v of the direction.
-    azimuth: f32,
-    /// Whether what it hit may move against the point.
-    changing: bool,
-}
-
 /// Buffers that are reused from batch to batch.
 #[derive(Debug, Default)]
 pub struct GatherScratch {
@@ -152,6 +140,10 @@ pub struct GatherScratch {
 /// Gathers ambient light at `points` and writes it to `out`, which has the same length.
 ///
 /// Points should be ordered by sample class. The result of a point does not depend on its neighbours in the list.
+///
+/// Inlined, so that its loops over neighbouring points are compiled for the instruction set of the caller. The bits do not
+/// depend on it.
+#[inline(always)]
 pub fn gather(
     world: &impl World,
     params: &GatherParams<'_>,
@@ -165,6 +157,7 @@ pub fn gather(
     }
 }
 
+#[inline(always)]
 fn gather_batch(
     world: &impl World,
     params: &GatherParams<'_>,
@@ -174,61 +167,13 @@ fn gather_batch(
 ) {
     out.fill(Gathered::default());
     scratch.first.trace(world, params, points, &mut scratch.radiance, out);
-    let spp = params.samples.spp() as usize;
-    let samples = scratch.first.samples();
+    let samples = &scratch.first.samples;
     if params.thin == Thin::Off {
         scratch.chords.skip(points.len());
     } else {
         scratch.chords.trace(world, params, points, samples, &mut scratch.radiance, out);
     }
-    for (i, gathered) in out.iter_mut().enumerate() {
-        combine(params, &samples[i * spp..][..spp], &scratch.chords.results()[i], gathered);
-    }
-}
-
-/// Openness, near radiance and bent normal of one point from its traced rays (spec §§3, 8).
-fn combine(params: &GatherParams<'_>, samples: &[Sample], second: &SecondBatch, gathered: &mut Gathered) {
-    // Sums in double precision: adding 65536 rays in single precision errs by 1e-3.
-    let (mut open, mut changing) = (0.0, 0.0);
-    let mut bent = DVec3::ZERO;
-    // Σ (1 - μ) L_r, and the sums of the average: weights and weighted radiances.
-    let (mut per_hit, mut weight, mut weighted) = (DVec3::ZERO, 0.0, DVec3::ZERO);
-    for sample in samples {
-        let mu = f64::from(params.openness.at(sample.distance));
-        let radiance = sample.radiance.as_dvec3();
-        open += mu;
-        bent += mu * sample.direction.as_dvec3();
-        per_hit += (1.0 - mu) * radiance;
-        changing += if sample.changing { 1.0 - mu } else { 0.0 };
-        if sample.distance < params.near_limit {
-            let w = if params.near_radiance == NearRadiance::AveragedPlain { 1.0 } else { 1.0 - mu };
-            weight += w;
-            weighted += w * radiance;
-        }
-    }
-    let count = samples.len() as f64;
-    let (first, per_hit) = ((open / count) as f32, (per_hit / count).as_vec3());
-    let (chord_weight, chord_weighted) = (f64::from(second.weight), second.weighted_radiance.as_dvec3());
-    let mean =
-        |weighted: DVec3, weight: f64| if weight > 0.0 { (weighted / weight).as_vec3() } else { Vec3::ZERO };
-    // Near radiance that is consistent with an openness o (spec §8.1).
-    let near = |o: f32| match params.near_radiance {
-        NearRadiance::Off => Vec3::ZERO,
-        NearRadiance::PerHit if first < 1.0 => per_hit * ((1.0 - o) / (1.0 - first)),
-        NearRadiance::PerHit => mean(chord_weighted, chord_weight) * (1.0 - o),
-        NearRadiance::Averaged | NearRadiance::AveragedPlain => {
-            mean(weighted + chord_weighted, weight + chord_weight) * (1.0 - o)
-        }
-    };
-    let openness = first.min(second.openness);
-    gathered.openness = openness;
-    gathered.near = near(openness);
-    gathered.first = first;
-    gathered.near_first = near(first);
-    gathered.second = second.openness;
-    gathered.near_second = near(second.openness);
-    gathered.bent = (bent / count).as_vec3();
-    gathered.changing = (changing / count) as f32;
+    combine(params, samples, scratch.chords.results(), out);
 }
 
 impl<'a> GatherParams<'a> {
@@ -271,6 +216,16 @@ impl<'a> GatherParams<'a> {
     #[must_use]
     pub fn cone_width_of(spp: u32) -> f32 {
         (PI / spp as f32).sqrt()
+    }
+
+    /// What the radiance of a hit is over its albedo, where that is the same for all hits.
+    fn albedo_factor(&self) -> Option<Vec3> {
+        match self.source {
+            // The factor of the self-similar bounce needs the final openness: see `compose::near_radiance`.
+            RadianceSource::Albedo | RadianceSource::SelfSimilar => Some(Vec3::ONE),
+            RadianceSource::Ambient => Some(self.ambient),
+            RadianceSource::Lit | RadianceSource::LitUnshadowed => None,
+        }
     }
 
     fn cone_width(&self) -> f32 {

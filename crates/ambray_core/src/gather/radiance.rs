@@ -64,13 +64,9 @@ impl RadianceScratch {
     /// Tag, radiance L_r and shadow rays of each hit.
     pub(super) fn results(&self, params: &GatherParams<'_>) -> impl Iterator<Item = (u32, Vec3, u32)> {
         self.tags.iter().zip(&self.albedo).zip(&self.received).map(move |((&tag, &albedo), received)| {
-            let radiance = match params.source {
-                // The factor of the self-similar bounce needs the final openness: see `compose::near_radiance`.
-                RadianceSource::Albedo | RadianceSource::SelfSimilar => albedo,
-                RadianceSource::Ambient => albedo * params.ambient,
-                RadianceSource::Lit | RadianceSource::LitUnshadowed => {
-                    albedo * params.ambient + reflected(albedo, received.irradiance)
-                }
+            let radiance = match params.albedo_factor() {
+                Some(factor) => albedo * factor,
+                None => albedo * params.ambient + reflected(albedo, received.irradiance),
             };
             (tag, radiance, received.shadow_rays)
         })

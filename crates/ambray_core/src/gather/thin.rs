@@ -7,7 +7,11 @@ use crate::{
     trace::{Hit, Ray, World},
 };
 
-use super::{GatherParams, Gathered, Sample, ShadedPoint, radiance::RadianceScratch};
+use super::{
+    GatherParams, Gathered, ShadedPoint,
+    radiance::RadianceScratch,
+    samples::{Run, Sample, Samples},
+};
 
 /// Chords end a little before the second end point (spec §5).
 const CHORD_END: f32 = 1.0 - 1e-4;
@@ -75,7 +79,7 @@ impl Chords {
         world: &impl World,
         params: &GatherParams<'_>,
         points: &[ShadedPoint],
-        samples: &[Sample],
+        samples: &Samples,
         radiance: &mut RadianceScratch,
         out: &mut [Gathered],
     ) {
@@ -164,26 +168,25 @@ impl Chords {
 
     /// One chord for each chosen pair of missed rays, run by run of equal class and pair by pair, so that
     /// neighbouring rays are nearly parallel.
-    fn make_rays(&mut self, params: &GatherParams<'_>, points: &[ShadedPoint], samples: &[Sample]) {
+    fn make_rays(&mut self, params: &GatherParams<'_>, points: &[ShadedPoint], samples: &Samples) {
         self.chords.clear();
         self.rays.clear();
         let spp = params.samples.spp() as usize;
-        let mut first = 0;
-        for run in points.chunk_by(|a, b| a.key.class == b.key.class) {
-            self.find_missed(params, &samples[first * spp..][..run.len() * spp]);
+        for run in &samples.runs {
+            self.find_missed(params, samples, run);
             let most = self.starts.windows(2).map(|w| w[1] - w[0]).max().unwrap_or(0);
             let mut emit = |q: usize, partner: &dyn Fn(usize) -> Option<usize>| {
-                for (i, point) in run.iter().enumerate() {
+                for (i, point) in points[run.range()].iter().enumerate() {
                     let missed = &self.missed[self.starts[i]..self.starts[i + 1]];
                     let Some(partner) = partner(missed.len()) else { continue };
                     let joins = [missed[q], missed[partner]];
-                    let ends = joins.map(|j| end(params, point, &samples[(first + i) * spp + j as usize]));
+                    let ends = joins.map(|j| end(params, point, &samples.get(run.slot(i, j as usize))));
                     let length = ends[0].distance(ends[1]);
                     if length > 0.0 {
                         let direction = (ends[1] - ends[0]) / length;
                         let seed = point.key.ray_seed((spp + q * spp + partner) as u32);
                         self.rays.push(Ray { origin: ends[0], t_max: CHORD_END * length, direction, seed });
-                        let point = (first + i) as u32;
+                        let point = (run.first + i) as u32;
                         let joins = joins.map(|j| j as u16);
                         self.chords.push(Chord { point, joins, length, blocked: 0.0, weight: 0.0 });
                     }
@@ -203,22 +206,22 @@ impl Chords {
                     }
                 }
             }
-            first += run.len();
         }
     }
 
     /// Lists the missed rays of each point: in the order of the samples (paper) or of their azimuth (sheet).
-    fn find_missed(&mut self, params: &GatherParams<'_>, samples: &[Sample]) {
+    fn find_missed(&mut self, params: &GatherParams<'_>, samples: &Samples, run: &Run) {
         self.missed.clear();
         self.starts.clear();
         self.starts.push(0);
-        for samples in samples.chunks(params.samples.spp() as usize) {
+        for point in 0..run.points {
             let start = self.missed.len();
+            let slot = |j: u32| run.slot(point, j as usize);
             self.missed
-                .extend((0..samples.len() as u32).filter(|&j| samples[j as usize].distance >= params.radius));
+                .extend((0..params.samples.spp()).filter(|&j| samples.distance[slot(j)] >= params.radius));
             if params.thin == Thin::Sheet {
-                self.missed[start..]
-                    .sort_by(|&a, &b| samples[a as usize].azimuth.total_cmp(&samples[b as usize].azimuth));
+                let azimuth = |j: u32| samples.azimuth[slot(j)];
+                self.missed[start..].sort_by(|&a, &b| azimuth(a).total_cmp(&azimuth(b)));
             }
             self.starts.push(self.missed.len());
         }

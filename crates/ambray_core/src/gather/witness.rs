@@ -84,19 +84,19 @@ impl Meeting {
 impl GatherScratch {
     /// The N rays of `point`, which was the only one of the last call of [`gather`](super::gather).
     pub(crate) fn rays(&self, params: &GatherParams<'_>, point: &ShadedPoint) -> Vec<AmbientRay> {
-        let samples = self.first.samples();
-        debug_assert_eq!(samples.len(), params.samples.spp() as usize);
+        let samples = &self.first.samples;
+        debug_assert_eq!(samples.distance.len(), params.samples.spp() as usize);
         let origin = params.offset.apply(point.position, point.geometric_normal, point.reach);
         let (t_max, is_traced, hit) = (params.openness.reach(), false, None);
-        let mut rays: Vec<_> = samples
-            .iter()
-            .map(|sample| {
+        let mut rays: Vec<_> = (0..params.samples.spp() as usize)
+            .map(|slot| {
+                let sample = samples.get(slot);
                 let (direction, openness) = (sample.direction, params.openness.at(sample.distance));
                 AmbientRay { origin, direction, t_max, is_traced, hit, openness }
             })
             .collect();
-        for ((ray, hit), &slot) in self.first.rays.iter().zip(&self.first.hits).zip(&self.first.slots) {
-            let radiance = samples[slot as usize].radiance;
+        for ((ray, hit), &slot) in self.first.rays.iter().zip(self.first.hits()).zip(&self.first.slots) {
+            let radiance = samples.get(slot as usize).radiance;
             rays[slot as usize].is_traced = true;
             rays[slot as usize].hit = hit.is_hit().then(|| Meeting::of(ray, hit, radiance));
         }
@@ -113,7 +113,7 @@ impl GatherScratch {
         if params.thin == Thin::Off {
             return Vec::new();
         }
-        let (samples, traced) = (self.first.samples(), &self.chords);
+        let (samples, traced) = (&self.first.samples, &self.chords);
         // Where any hit was enough for the method, the nearest is still the one to show.
         let mut nearest = Vec::new();
         let hits = if any_hit_will_do(params) {
@@ -135,7 +135,7 @@ impl GatherScratch {
             .zip(hits)
             .map(|((chord, ray), hit)| {
                 let joins = chord.joins.map(usize::from);
-                let [from, to] = joins.map(|j| end(params, point, &samples[j]));
+                let [from, to] = joins.map(|j| end(params, point, &samples.get(j)));
                 let hit = hit.is_hit().then(|| Meeting::of(ray, hit, Vec3::ZERO));
                 Chord { joins, from, to, hit, blocked: chord.blocked, weight: share_of(chord.length) / total }
             })

@@ -13,6 +13,7 @@ mod record;
 mod rival;
 mod stages;
 mod temporal;
+mod vectors;
 mod world;
 
 use std::{

@@ -23,6 +23,7 @@ use rayon::prelude::*;
 use super::{
     stages::{Clock, Stage},
     temporal::Sequel,
+    vectors::{self, Work},
     world::CpuWorld,
 };
 
@@ -65,6 +66,25 @@ struct Job<'a> {
     params: &'a GatherParams<'a>,
     sequel: Option<&'a Sequel<'a>>,
     clock: &'a Clock,
+}
+
+/// A tile to be rendered: its first pixel is (`x0`, `y0`), which is the row where `band` starts.
+struct Tile<'t, 'a> {
+    job: &'t Job<'a>,
+    scratch: &'t mut Scratch,
+    band: &'t mut Band<'a>,
+    x0: usize,
+    y0: usize,
+    counts: &'t mut RayCounts,
+}
+
+impl Work for Tile<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        self.job.tile(self.scratch, self.band, self.x0, self.y0, self.counts);
+    }
 }
 
 /// Buffers of one thread, reused from tile to tile.
@@ -128,7 +148,9 @@ pub(super) fn run(
         let mut counts = RayCounts::default();
         for tile in 0..(width as usize).div_ceil(TILE) {
             control.check()?;
-            job.tile(scratch, &mut band, tile * TILE, i * TILE, &mut counts);
+            let (job, band, counts) = (&job, &mut band, &mut counts);
+            let tile = Tile { job, scratch, band, x0: tile * TILE, y0: i * TILE, counts };
+            vectors::run(world.isa(), tile);
         }
         let done = done.fetch_add(1, Ordering::Relaxed) + 1;
         (control.progress)(done as f32 / count as f32);
@@ -140,7 +162,8 @@ pub(super) fn run(
 }
 
 impl Job<'_> {
-    /// All stages for the tile whose first pixel is (`x0`, `y0`); `band` starts at row `y0`.
+    /// All stages of a [`Tile`].
+    #[inline(always)]
     fn tile(&self, scratch: &mut Scratch, band: &mut Band<'_>, x0: usize, y0: usize, counts: &mut RayCounts) {
         let start = Instant::now();
         self.primary(scratch, band, x0, y0);
@@ -244,6 +267,7 @@ impl Job<'_> {
     }
 
     /// Openness, near radiance and bent normal.
+    #[inline(always)]
     fn ambient(&self, scratch: &mut Scratch, band: &mut Band<'_>, counts: &mut RayCounts) {
         let (frame, seed) = (self.settings.frame, self.settings.seed);
         // Class by class, so that the rays of a run share their directions on flat surfaces.

@@ -5,8 +5,9 @@ use std::sync::Arc;
 use ambray_core::frame::PoseStats;
 use ambray_core::trace::{Diffuse, Hit, Motion, Ray, Trace, World};
 use ambray_scene::{Scene, surface::Surfaces};
+use glam::Vec3;
 
-use crate::{BuildOptions, Tracer};
+use crate::{BuildOptions, Isa, Tracer};
 
 /// Tracer and surfaces of a scene.
 #[derive(Debug)]
@@ -33,6 +34,11 @@ impl CpuWorld {
         &self.tracer
     }
 
+    /// The instruction set that everything is computed with.
+    pub(super) const fn isa(&self) -> Isa {
+        self.tracer.stats().isa
+    }
+
     /// Attributes of surfaces.
     #[must_use]
     pub const fn surfaces(&self) -> &Arc<Surfaces> {
@@ -57,5 +63,10 @@ impl World for CpuWorld {
 
     fn diffuse_at(&self, ray: &Ray, hit: &Hit, width: f32) -> Diffuse {
         self.surfaces.diffuse_at(ray, hit, width).facing(ray.direction).into()
+    }
+
+    #[inline(always)]
+    fn albedos_at(&self, rays: &[Ray], hits: &[Hit], cone: f32, albedos: &mut [Vec3]) {
+        self.surfaces.albedos_at(rays, hits, cone, albedos);
     }
 }

@@ -1,0 +1,95 @@
+//! Textures made ready for many reads over wide footprints.
+
+use std::sync::Arc;
+
+use glam::{Vec2, Vec4};
+
+use super::{Filter, Image, ImageLevel, Sampler};
+use crate::srgb;
+
+/// Texels of the largest level that is kept decoded. Bounced light reads footprints of a tenth of the radius and more, which
+/// is this level or a smaller one for all but the closest hits; 64 × 64 texels are 64 KiB, all levels below another third.
+const DECODED_TEXELS: usize = 64 * 64;
+
+/// A texture whose coarse levels are decoded.
+#[derive(Debug)]
+pub(crate) struct PreparedTexture {
+    image: Arc<Image>,
+    sampler: Sampler,
+    texels_across: f32,
+    /// The coarse levels' texels, linear, level after level.
+    texels: Vec<Vec4>,
+    /// Where each level begins in `texels`; [`FINE`] for those that are not there.
+    starts: Vec<u32>,
+}
+
+/// Not decoded.
+const FINE: u32 = u32::MAX;
+
+impl PreparedTexture {
+    /// Makes `image` ready to be read by `sampler`.
+    pub(crate) fn new(image: &Arc<Image>, sampler: Sampler) -> Self {
+        let (decode, mut texels) = (image.decoder(), Vec::new());
+        let mut place = |level: &ImageLevel| {
+            if level.texels.len() > DECODED_TEXELS {
+                return FINE;
+            }
+            let start = texels.len() as u32;
+            texels.extend(level.texels.iter().map(|texel| {
+                let [r, g, b, a] = texel.map(usize::from);
+                Vec4::new(decode[r], decode[g], decode[b], srgb::UNIT[a])
+            }));
+            start
+        };
+        let starts = image.levels.iter().map(&mut place).collect();
+        Self { image: Arc::clone(image), sampler, texels_across: image.texels_across(), texels, starts }
+    }
+
+    /// The bits of [`Sampler::sample`].
+    #[inline(always)]
+    pub(crate) fn sample(&self, uv: Vec2, width: f32) -> Vec4 {
+        let texels = width * self.texels_across;
+        self.sampler.over_levels(self.starts.len(), texels, |level, filter| self.read(level, filter, uv))
+    }
+
+    #[inline(always)]
+    fn read(&self, level: usize, filter: Filter, uv: Vec2) -> Vec4 {
+        let (start, level) = (self.starts[level], &self.image.levels[level]);
+        if start == FINE {
+            return self.sampler.at_level(level, self.image.decoder(), filter, uv);
+        }
+        let texels = &self.texels[start as usize..];
+        self.sampler.between_texels((level.width, level.height), filter, uv, |texel| texels[texel])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Wrap;
+
+    #[test]
+    fn prepared_textures_read_the_same_bits() {
+        // 300 × 70 texels: three levels are too fine to be decoded.
+        let byte = |i: u32| (i.wrapping_mul(2_654_435_761) >> 24) as u8;
+        let texels: Vec<[u8; 4]> =
+            (0..300 * 70).map(|i| [byte(4 * i), byte(4 * i + 1), byte(4 * i + 2), byte(4 * i + 3)]).collect();
+        for srgb in [false, true] {
+            let image = Arc::new(Image::new(String::new(), 300, 70, texels.clone(), srgb));
+            for (wrap, min, mip) in [
+                (Wrap::Repeat, Filter::Linear, Some(Filter::Linear)),
+                (Wrap::Mirror, Filter::Nearest, Some(Filter::Linear)),
+                (Wrap::Clamp, Filter::Linear, Some(Filter::Nearest)),
+                (Wrap::Repeat, Filter::Linear, None),
+            ] {
+                let sampler = Sampler { wrap: [wrap; 2], mag: Filter::Linear, min, mip };
+                let prepared = PreparedTexture::new(&image, sampler);
+                for i in 0..2000 {
+                    let uv = Vec2::new(i as f32 * 0.0173 - 9.0, i as f32 * -0.0091 + 3.0);
+                    let width = libm::exp2f((i % 23) as f32 * 0.5 - 10.0);
+                    assert_eq!(prepared.sample(uv, width), sampler.sample(&image, uv, width));
+                }
+            }
+        }
+    }
+}
