@@ -3,12 +3,14 @@
 //! O'(p) = Σ k A(p,q) O(q) / Σ k A(p,q). On a locally constant signal the pattern vanishes exactly, because every
 //! window holds each of the 16 classes with the same total weight.
 
+mod band;
 mod verdict;
 
 use glam::{Vec3, Vec4};
 
 use crate::settings::{FilterTest, Settings, Window};
 
+pub use band::BandScratch;
 pub use verdict::{Refusal, Verdict};
 
 /// What the filter knows about a pixel.
@@ -153,57 +155,16 @@ impl Filter {
         }
     }
 
-    /// Filters row `y` of a picture of `width` pixels a row: writes the row of each plane of `inputs` to `outputs`.
-    ///
-    /// Taps outside the picture and taps that see no surface are skipped; pixels that see no surface are copied.
+    /// Filters row `y` of a picture of `width` pixels a row: a [band](Self::filter_band) of one row.
     pub fn filter_row<const PLANES: usize>(
         &self,
         guides: &[Guide],
         width: usize,
         y: usize,
         inputs: [&[Vec4]; PLANES],
-        mut outputs: [&mut [Vec4]; PLANES],
+        outputs: [&mut [Vec4]; PLANES],
     ) {
-        for x in 0..width {
-            let values = self.filter_pixel(guides, width, (x, y), inputs);
-            for (output, value) in outputs.iter_mut().zip(values) {
-                output[x] = value;
-            }
-        }
-    }
-
-    /// O'(p) of each plane, at pixel (x, y).
-    fn filter_pixel<const PLANES: usize>(
-        &self,
-        guides: &[Guide],
-        width: usize,
-        (x, y): (usize, usize),
-        inputs: [&[Vec4]; PLANES],
-    ) -> [Vec4; PLANES] {
-        let p = y * width + x;
-        let guide = &guides[p];
-        if !guide.is_surface() {
-            return inputs.map(|input| input[p]);
-        }
-        let (taps, height) = (self.axis(), guides.len() / width);
-        let mut sums = [Vec4::ZERO; PLANES];
-        let mut weight = 0.0;
-        for &(dy, ky) in taps {
-            let Some(row) = shifted(y, dy, height) else { continue };
-            for &(dx, kx) in taps {
-                let Some(column) = shifted(x, dx, width) else { continue };
-                let q = row * width + column;
-                // The centre is always accepted, so the weight is never zero.
-                if q == p || (guides[q].is_surface() && self.accepts(guide, &guides[q])) {
-                    let k = kx * ky;
-                    weight += k;
-                    for (sum, input) in sums.iter_mut().zip(inputs) {
-                        *sum += k * input[q];
-                    }
-                }
-            }
-        }
-        sums.map(|sum| sum / weight)
+        self.filter_band(guides, width, y..y + 1, inputs, outputs, &mut BandScratch::default());
     }
 }
 

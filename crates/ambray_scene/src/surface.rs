@@ -69,10 +69,10 @@ struct Placed {
 }
 
 impl Placed {
-    #[inline]
+    #[inline(always)]
     fn new(instance: &Instance, mesh: &Mesh, corners: [u32; 3]) -> Self {
-        let points =
-            corners.map(|i| instance.world_from_object.transform_point3a(mesh.positions[i as usize].into()));
+        let point = |i: u32| instance.world_from_object.transform_point3a(mesh.positions[i as usize].into());
+        let points = each(corners, point);
         let (e1, e2) = (points[1] - points[0], points[2] - points[0]);
         // Edges of tiny triangles would vanish when multiplied; scaled to unit size they do not.
         let scale = e1.abs().max(e2.abs()).max_element();
@@ -136,6 +136,7 @@ impl SurfacePoint {
     /// the geometric one, and the shading normal goes with the smooth one. So a normal map may bend it below the horizon
     /// of the triangle, but never jumps to the other side.
     #[must_use]
+    #[inline(always)]
     pub fn facing(self, direction: Vec3) -> Self {
         let geometric_normal = towards(self.geometric_normal, -direction);
         let turned = self.smooth_normal.dot(geometric_normal) < 0.0;
@@ -161,6 +162,7 @@ impl From<DiffusePoint> for Diffuse {
 }
 
 /// `v` or `-v`, whichever is on the side of `side`.
+#[inline(always)]
 fn towards(v: Vec3, side: Vec3) -> Vec3 {
     if v.dot(side) < 0.0 { -v } else { v }
 }
@@ -237,6 +239,7 @@ impl Surfaces {
     /// The surface at the `hit` of `ray`, its textures averaged over a footprint of `width` scene units; 0 reads them
     /// finest.
     #[must_use]
+    #[inline(always)]
     pub fn surface_at(&self, ray: &Ray, hit: &Hit, width: f32) -> SurfacePoint {
         if let Some(instance) = self.scene.shape_instance(hit.instance) {
             let point = self.shape_point(instance, ray, hit);
@@ -330,7 +333,7 @@ impl Surfaces {
             alpha *= read.sampler.alpha_at(&self.scene.images[read.image as usize], uv);
         }
         if !mesh.colors.is_empty() {
-            let [a, b, c] = corners.map(|i| mesh.colors[i as usize].w);
+            let [a, b, c] = each(corners, |i| mesh.colors[i as usize].w);
             alpha *= a * weights[0] + b * weights[1] + c * weights[2];
         }
         alpha
@@ -356,6 +359,7 @@ struct At<'s> {
 }
 
 impl<'s> At<'s> {
+    #[inline(always)]
     fn new(surfaces: &'s Surfaces, hit: &Hit, width: f32) -> Self {
         let scene = &*surfaces.scene;
         let (instance, frame) =
@@ -383,36 +387,42 @@ impl<'s> At<'s> {
         at
     }
 
+    #[inline(always)]
     fn position(&self) -> Vec3 {
         // From the first corner along the edges: exact where edges are short and far from the origin.
         let [a, b, c] = self.points;
         (a + (b - a) * self.weights[1] + (c - a) * self.weights[2]).into()
     }
 
+    #[inline(always)]
     fn reach(&self) -> f32 {
-        let object = self.corners.map(|i| Vec3A::from(self.mesh.positions[i as usize]).abs());
-        object
-            .map(|p| self.frame.magnitude.transform_point3a(p).max_element())
-            .into_iter()
-            .fold(0.0, f32::max)
+        let reach = |i: u32| {
+            let magnitude = Vec3A::from(self.mesh.positions[i as usize]).abs();
+            self.frame.magnitude.transform_point3a(magnitude).max_element()
+        };
+        let [a, b, c] = each(self.corners, reach);
+        0.0_f32.max(a).max(b).max(c)
     }
 
+    #[inline(always)]
     fn vertex_normal(&self) -> Option<Vec3> {
         if self.mesh.normals.is_empty() {
             return None;
         }
-        let [a, b, c] = self.corners.map(|i| Vec3A::from(self.mesh.normals[i as usize]));
+        let [a, b, c] = each(self.corners, |i| Vec3A::from(self.mesh.normals[i as usize]));
         let object = a * self.weights[0] + b * self.weights[1] + c * self.weights[2];
         let world: Vec3 = (self.frame.normal_from_object * object).into();
         // The matrix may be tiny or huge; a direction is left as long as a component is.
         (world / world.abs().max_element()).try_normalize()
     }
 
+    #[inline(always)]
     fn smooth_normal(&self) -> Vec3 {
         self.vertex_normal().unwrap_or(self.geometric_normal)
     }
 
     /// `smooth` bent by the normal map (glTF 2.0 §3.9.3 and appendix B.4).
+    #[inline(always)]
     fn shading_normal(&self, smooth: Vec3) -> Vec3 {
         let Some(texture) = &self.material.normal_texture else { return smooth };
         let Some((tangent, bitangent)) = self.tangents(smooth, texture) else { return smooth };
@@ -422,11 +432,12 @@ impl<'s> At<'s> {
     }
 
     /// Unit tangent and bitangent orthogonal to `smooth`: the directions of the map's red and green.
+    #[inline(always)]
     fn tangents(&self, smooth: Vec3, texture: &TextureRef) -> Option<(Vec3, Vec3)> {
         let (along, side) = if self.mesh.tangents.is_empty() {
             self.edge_tangent(texture)?
         } else {
-            let [a, b, c] = self.corners.map(|i| self.mesh.tangents[i as usize]);
+            let [a, b, c] = each(self.corners, |i| self.mesh.tangents[i as usize]);
             let object = a * self.weights[0] + b * self.weights[1] + c * self.weights[2];
             let world = self.instance.world_from_object.transform_vector3(object.truncate());
             (world, self.frame.side * if object.w < 0.0 { -1.0 } else { 1.0 })
@@ -437,6 +448,7 @@ impl<'s> At<'s> {
     }
 
     /// Direction in which u grows over the triangle, and the sign that `cross(normal, it)` needs to point against v.
+    #[inline(always)]
     fn edge_tangent(&self, texture: &TextureRef) -> Option<(Vec3, f32)> {
         let [a, b, c] = mesh_uvs(self.mesh, texture, self.corners);
         let (d1, d2) = (b - a, c - a);
@@ -448,21 +460,23 @@ impl<'s> At<'s> {
         (det != 0.0 && along.is_finite()).then(|| (along.into(), side))
     }
 
+    #[inline(always)]
     fn albedo(&self) -> Vec3 {
         let mut color = base_color(self.material, || {
-            let [a, b, c] = self.corners.map(|i| self.mesh.positions[i as usize]);
+            let [a, b, c] = each(self.corners, |i| self.mesh.positions[i as usize]);
             a + (b - a) * self.weights[1] + (c - a) * self.weights[2]
         });
         if let Some(texture) = &self.material.base_color_texture {
             color *= self.read(texture).truncate();
         }
         if !self.mesh.colors.is_empty() {
-            let [a, b, c] = self.corners.map(|i| self.mesh.colors[i as usize].truncate());
+            let [a, b, c] = each(self.corners, |i| self.mesh.colors[i as usize].truncate());
             color *= a * self.weights[0] + b * self.weights[1] + c * self.weights[2];
         }
         color
     }
 
+    #[inline(always)]
     fn emission(&self) -> Vec3 {
         match &self.material.emission_texture {
             Some(texture) if self.material.emission != Vec3::ZERO => {
@@ -473,8 +487,10 @@ impl<'s> At<'s> {
     }
 
     /// The texture's value over the footprint.
+    #[inline(always)]
     fn read(&self, texture: &TextureRef) -> Vec4 {
-        let uvs = mesh_uvs(self.mesh, texture, self.corners).map(|uv| texture.transform.transform_point2(uv));
+        let uvs =
+            each(mesh_uvs(self.mesh, texture, self.corners), |uv| texture.transform.transform_point2(uv));
         let read = self.scene.textures[texture.texture as usize];
         let image = &self.scene.images[read.image as usize];
         read.sampler.sample(image, weigh(uvs, self.weights), self.relative_width * uv_edge(uvs))
@@ -482,6 +498,7 @@ impl<'s> At<'s> {
 }
 
 /// The base colour, or that of the checker at `object_position`.
+#[inline(always)]
 fn base_color(material: &Material, object_position: impl FnOnce() -> Vec3) -> Vec3 {
     let base = material.base_color.truncate();
     match &material.checker {
@@ -490,16 +507,24 @@ fn base_color(material: &Material, object_position: impl FnOnce() -> Vec3) -> Ve
     }
 }
 
+/// What `of` makes of three corners. Unlike [`array::map`](core::array), it is always inlined.
+#[inline(always)]
+fn each<T, U>([a, b, c]: [T; 3], of: impl Fn(T) -> U) -> [U; 3] {
+    [of(a), of(b), of(c)]
+}
+
 /// Texture coordinates of the corners, zero if the mesh lacks the set.
+#[inline(always)]
 fn mesh_uvs(mesh: &Mesh, texture: &TextureRef, corners: [u32; 3]) -> [Vec2; 3] {
     match mesh.uvs.get(texture.uv_set as usize) {
-        Some(uvs) => corners.map(|i| uvs[i as usize]),
+        Some(uvs) => each(corners, |i| uvs[i as usize]),
         None => [Vec2::ZERO; 3],
     }
 }
 
 /// Root of twice the area of a triangle in a texture: lengths grow from a surface to its texture by the root of what areas
 /// grow by.
+#[inline(always)]
 fn uv_edge([a, b, c]: [Vec2; 3]) -> f32 {
     (b - a).perp_dot(c - a).abs().sqrt()
 }

@@ -125,8 +125,7 @@ impl<const L: usize> Sums<L> {
         let of = |sums: &[[f64; L]; 3]| DVec3::new(sums[0][lane], sums[1][lane], sums[2][lane]);
         let (weight, weighted) = (self.weight[lane], of(&self.weighted));
         let first = (self.open[lane] / count) as f32;
-        let (chord_weight, chord_weighted) =
-            (f64::from(second.weight), second.weighted_radiance.as_dvec3());
+        let (chord_weight, chord_weighted) = (f64::from(second.weight), second.weighted_radiance.as_dvec3());
         let mean = |weighted: DVec3, weight: f64| {
             if weight > 0.0 { (weighted / weight).as_vec3() } else { Vec3::ZERO }
         };

@@ -8,6 +8,7 @@
 mod motion;
 mod pass1;
 mod pass2;
+mod planes;
 mod points;
 mod record;
 mod rival;
@@ -39,6 +40,7 @@ use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 pub(crate) use pass1::TILE;
 pub use world::CpuWorld;
 
+use planes::Planes;
 use temporal::{History, Sequel};
 
 use crate::BuildOptions;
@@ -70,6 +72,8 @@ pub struct CpuBackend {
     rendered: AtomicBool,
     /// What the last frame left for the next one, where light is accumulated.
     history: Mutex<Option<History>>,
+    /// Planes for the next frame.
+    planes: Mutex<Planes>,
     /// The threads of the last call, kept for the next one.
     pool: Mutex<Option<(usize, Arc<ThreadPool>)>>,
 }
@@ -84,6 +88,7 @@ impl CpuBackend {
             spare: None,
             rendered: AtomicBool::new(false),
             history: Mutex::default(),
+            planes: Mutex::default(),
             pool: Mutex::default(),
         }
     }
@@ -113,25 +118,32 @@ impl CpuBackend {
             earlier: earlier.as_ref(),
         });
         pool.install(|| {
-            let sequel = accumulation.as_ref();
-            let mut pass1 = pass1::run(&self.world, settings, view, &params, sequel, control)?;
+            let (sequel, isa) = (accumulation.as_ref(), self.world.isa());
+            // Taken out, so that frames that are rendered at once do not wait for each other.
+            let mut planes = std::mem::take(&mut *self.planes());
+            let mut pass1 = pass1::run(&self.world, settings, view, &params, sequel, &mut planes, control)?;
             let mut times = pass1.clock.shares(pass1.elapsed);
             let pass2 = if settings.method.is_screen_space() {
                 let rival = rival::run(&self.world, settings, view, &params, &mut pass1, control)?;
-                let pass2 = pass2::run(&mut pass1, &rival.settings, view, None, control)?;
+                let pass2 = pass2::run(&mut pass1, &rival.settings, view, None, isa, &mut planes, control)?;
                 pass1.ambient = rival.raw;
                 [times.ambient, times.filter] = rival.elapsed;
                 pass2
             } else {
-                pass2::run(&mut pass1, settings, view, sequel, control)?
+                pass2::run(&mut pass1, settings, view, sequel, isa, &mut planes, control)?
             };
             let (width, height) = view.camera.size();
             times.filter += pass2.elapsed;
             times.total = start.elapsed();
-            let frames = pass2.history();
             if sequel.is_some() {
                 *self.history() = Some(History::new(settings, view, pass1.guides, pass2.means));
+            } else {
+                planes.give(pass1.guides);
             }
+            planes.give(pass1.then);
+            planes.give(pass1.second);
+            planes.give(pass1.bent);
+            *self.planes() = planes;
             Ok(Frame {
                 width,
                 height,
@@ -140,11 +152,22 @@ impl CpuBackend {
                 ambient_raw: pass1.ambient,
                 ambient: pass2.ambient,
                 bent: pass2.bent,
-                history: frames,
+                history: pass2.history,
                 view: view.clone(),
                 stats: FrameStats { rays: pass1.rays, times, threads: pool.current_num_threads() },
             })
         })
+    }
+
+    /// Takes back a frame that is not needed any more: the next one of its size is written to its memory, which saves the
+    /// system the work of mapping and clearing it.
+    pub fn recycle(&self, frame: Frame) {
+        self.planes().give_frame(frame);
+    }
+
+    fn planes(&self) -> MutexGuard<'_, Planes> {
+        // Whole at any time, so a panic of another thread does not matter.
+        self.planes.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Forgets earlier frames: the next one begins a sequence.

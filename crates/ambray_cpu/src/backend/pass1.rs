@@ -21,6 +21,7 @@ use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
 use super::{
+    planes::Planes,
     stages::{Clock, Stage},
     temporal::Sequel,
     vectors::{self, Work},
@@ -56,6 +57,27 @@ struct Band<'a> {
     ambient: &'a mut [Vec4],
     second: &'a mut [Vec4],
     bent: &'a mut [Vec4],
+}
+
+impl Band<'_> {
+    /// Pixel `i` sees no surface: its planes are those of an open place before the `background`.
+    fn see_nothing(&mut self, i: usize, background: Vec3) {
+        self.gbuffer[i] = GBufferPixel { emission: background, rays: 1, ..GBufferPixel::NOTHING };
+        self.guides[i] = Guide::NOTHING;
+        if let Some(then) = self.then.get_mut(i) {
+            *then = Guide::NOTHING;
+        }
+        self.leave_open(i);
+    }
+
+    /// Nothing is gathered at pixel `i`.
+    fn leave_open(&mut self, i: usize) {
+        self.ambient[i] = Vec4::X;
+        self.bent[i] = Vec4::ZERO;
+        if let Some(second) = self.second.get_mut(i) {
+            *second = Vec4::X;
+        }
+    }
 }
 
 /// What is the same for all tiles.
@@ -108,6 +130,7 @@ pub(super) fn run(
     view: &View,
     params: &GatherParams<'_>,
     sequel: Option<&Sequel<'_>>,
+    planes: &mut Planes,
     control: Control<'_>,
 ) -> Result<Pass1, Cancelled> {
     let start = Instant::now();
@@ -115,12 +138,12 @@ pub(super) fn run(
     let pixels = width as usize * height as usize;
     let after_filter = settings.takes_minimum_after_filter();
     let mut pass = Pass1 {
-        gbuffer: vec![GBufferPixel::NOTHING; pixels],
-        guides: vec![Guide::NOTHING; pixels],
-        then: vec![Guide::NOTHING; if sequel.is_some() { pixels } else { 0 }],
-        ambient: vec![Vec4::X; pixels],
-        second: vec![Vec4::X; if after_filter { pixels } else { 0 }],
-        bent: vec![Vec4::ZERO; pixels],
+        gbuffer: planes.take(pixels),
+        guides: planes.take(pixels),
+        then: if sequel.is_some() { planes.take(pixels) } else { Vec::new() },
+        ambient: planes.take(pixels),
+        second: if after_filter { planes.take(pixels) } else { Vec::new() },
+        bent: planes.take(pixels),
         rays: RayCounts::default(),
         clock: Clock::default(),
         elapsed: Duration::ZERO,
@@ -172,13 +195,16 @@ impl Job<'_> {
         counts.shadow += self.direct(scratch, band);
         let start = self.clock.book(Stage::Direct, start);
         // Methods in screen space need the whole G-buffer first.
-        if !self.settings.method.is_screen_space() {
+        if self.settings.method.is_screen_space() {
+            scratch.seen.iter().for_each(|&(i, ..)| band.leave_open(i));
+        } else {
             self.ambient(scratch, band, counts);
             self.clock.book(Stage::Ambient, start);
         }
     }
 
     /// What each pixel sees.
+    #[inline(always)]
     fn primary(&self, scratch: &mut Scratch, band: &mut Band<'_>, x0: usize, y0: usize) {
         let width = self.view.camera.size().0 as usize;
         let (columns, rows) = (TILE.min(width - x0), band.gbuffer.len() / width);
@@ -190,15 +216,13 @@ impl Job<'_> {
             let (x, y) = (x as u32, y as u32);
             self.view.camera.primary_ray(x, y, PixelKey::primary_seed(x, y, frame))
         }));
-        scratch.hits.clear();
         scratch.hits.resize(scratch.rays.len(), Hit::MISS);
         self.world.closest_hits(&scratch.rays, &mut scratch.hits);
 
         scratch.seen.clear();
         for ((i, x, y), (ray, hit)) in pixels.zip(scratch.rays.iter().zip(&scratch.hits)) {
-            let pixel = &mut band.gbuffer[i];
-            pixel.rays = 1;
             if hit.is_hit() {
+                let pixel = &mut band.gbuffer[i];
                 (*pixel, band.guides[i]) = self.surface(ray, hit);
                 if let Some(sequel) = self.sequel {
                     let then = sequel.then(self.world.surfaces(), self.settings, &band.guides[i], ray, hit);
@@ -207,12 +231,13 @@ impl Job<'_> {
                 }
                 scratch.seen.push((i, x as u32, y as u32));
             } else {
-                pixel.emission = self.view.background;
+                band.see_nothing(i, self.view.background);
             }
         }
     }
 
     /// Attributes of the surface that a primary ray hit.
+    #[inline(always)]
     fn surface(&self, ray: &Ray, hit: &Hit) -> (GBufferPixel, Guide) {
         let camera = &self.view.camera;
         let footprint_there = camera.footprint(camera.depth(ray.origin + hit.t * ray.direction));

@@ -11,7 +11,7 @@ use ambray_core::{
 };
 use rayon::prelude::*;
 
-use super::{BackendError, CpuBackend, TILE, pass1};
+use super::{BackendError, CpuBackend, TILE, pass1, planes::Planes};
 use crate::rays::{FrameRays, RayBatch, RayKind};
 
 impl CpuBackend {
@@ -41,7 +41,8 @@ impl CpuBackend {
         self.pool(control.threads)?.install(|| {
             let samples = SampleSets::of(&settings);
             let params = GatherParams::new(&settings, view, &samples);
-            let seen = pass1::run(&self.world, &settings, view, &params, None, control)?.gbuffer;
+            let planes = &mut Planes::default();
+            let seen = pass1::run(&self.world, &settings, view, &params, None, planes, control)?.gbuffer;
             let batch = |kind, per_pixel: u32, rays: Vec<(Ray, u32)>| {
                 let (rays, tags) = rays.into_iter().unzip();
                 RayBatch { kind, width, height, per_pixel: per_pixel.max(1), rays, tags }

@@ -59,7 +59,8 @@ impl Albedos {
                 Some(Arc::new(PreparedTexture::new(&scene.images[read.image as usize], read.sampler)))
             })
             .collect();
-        let prepared = |mesh: &Arc<Mesh>| mesh.colors.is_empty() && textures[mesh.material as usize].is_some();
+        let prepared =
+            |mesh: &Arc<Mesh>| mesh.colors.is_empty() && textures[mesh.material as usize].is_some();
         let mappings: Vec<Option<Arc<[Mapping]>>> = scene
             .meshes
             .par_iter()

@@ -10,36 +10,31 @@ impl Sampler {
     ///
     /// Texel (i, j) has its centre at (i + ½, j + ½) / size. The mip level is log₂(`width` · √(texels of the image)); at level 0 and
     /// below the image is magnified. Each texel is decoded before it is filtered. A `uv` that is not finite reads as 0.
+    #[inline(always)]
     #[must_use]
     pub fn sample(&self, image: &Image, uv: Vec2, width: f32) -> Vec4 {
         let decode = image.decoder();
-        self.over_levels(image.levels.len(), width * image.texels_across(), |level, filter| {
-            self.at_level(&image.levels[level], decode, filter, uv)
-        })
+        let blend = self.blend(image.levels.len(), width * image.texels_across());
+        let fine = self.read(image, decode, blend.fine, blend.filter, uv);
+        if blend.share == 0.0 {
+            return fine;
+        }
+        fine.lerp(self.read(image, decode, blend.coarse, blend.filter, uv), blend.share)
     }
 
-    /// Reads the levels that a footprint of `texels` texels of the full image asks for, with the filter between texels that
-    /// is theirs, and blends them.
+    /// Which levels of `levels` a footprint of `texels` texels of the full image asks for.
     #[inline(always)]
-    pub(super) fn over_levels(
-        &self,
-        levels: usize,
-        texels: f32,
-        read: impl Fn(usize, Filter) -> Vec4,
-    ) -> Vec4 {
+    pub(super) fn blend(&self, levels: usize, texels: f32) -> Blend {
         let last = levels - 1;
-        let Some(level) = level_of(texels, last) else { return read(0, self.mag) };
+        let one = |level: usize, filter: Filter| Blend { fine: level, coarse: level, share: 0.0, filter };
+        let Some(level) = level_of(texels, last) else { return one(0, self.mag) };
         match self.mip {
-            None => read(0, self.min),
-            Some(Filter::Nearest) => read((level + 0.5) as usize, self.min),
+            None => one(0, self.min),
+            Some(Filter::Nearest) => one((level + 0.5) as usize, self.min),
             Some(Filter::Linear) => {
-                let lower = level as usize;
-                let share = level - lower as f32;
-                let fine = read(lower, self.min);
-                if share == 0.0 {
-                    return fine;
-                }
-                fine.lerp(read((lower + 1).min(last), self.min), share)
+                let fine = level as usize;
+                let share = level - fine as f32;
+                Blend { fine, coarse: (fine + 1).min(last), share, filter: self.min }
             }
         }
     }
@@ -61,43 +56,75 @@ impl Sampler {
         if v.share == 0.0 { row(v.first) } else { lerp(row(v.first), row(v.second), v.share) }
     }
 
-    /// The value of one level, whose colours `decode` decodes.
     #[inline(always)]
-    pub(super) fn at_level(
-        &self,
-        level: &ImageLevel,
-        decode: &[f32; 256],
-        filter: Filter,
-        uv: Vec2,
-    ) -> Vec4 {
-        self.between_texels((level.width, level.height), filter, uv, |texel| {
-            let [r, g, b, a] = level.texels[texel].map(usize::from);
-            Vec4::new(decode[r], decode[g], decode[b], srgb::UNIT[a])
-        })
+    fn read(&self, image: &Image, decode: &[f32; 256], level: usize, filter: Filter, uv: Vec2) -> Vec4 {
+        self.between_texels(Encoded::of(&image.levels[level], decode), filter, uv)
     }
 
-    /// The value of a level of `size` texels, given its texels row by row.
+    /// The value of a level.
     #[inline(always)]
-    pub(super) fn between_texels(
-        &self,
-        size: (u32, u32),
-        filter: Filter,
-        uv: Vec2,
-        texel: impl Fn(usize) -> Vec4,
-    ) -> Vec4 {
-        let [u, v] = self.taps(size, filter, uv);
-        let [first, second] = [v.first, v.second].map(|row| row * size.0 as usize);
+    pub(super) fn between_texels(&self, level: impl Texels, filter: Filter, uv: Vec2) -> Vec4 {
+        let (width, height) = level.size();
+        let [u, v] = self.taps((width, height), filter, uv);
+        let [first, second] = [v.first, v.second].map(|row| row * width as usize);
         if filter == Filter::Nearest {
-            return texel(first + u.first);
+            return level.texel(first + u.first);
         }
-        let upper = texel(first + u.first).lerp(texel(first + u.second), u.share);
-        let lower = texel(second + u.first).lerp(texel(second + u.second), u.share);
+        let upper = level.texel(first + u.first).lerp(level.texel(first + u.second), u.share);
+        let lower = level.texel(second + u.first).lerp(level.texel(second + u.second), u.share);
         upper.lerp(lower, v.share)
     }
 
     #[inline(always)]
     fn taps(&self, (width, height): (u32, u32), filter: Filter, uv: Vec2) -> [Taps; 2] {
         [Taps::new(uv.x, width, self.wrap[0], filter), Taps::new(uv.y, height, self.wrap[1], filter)]
+    }
+}
+
+/// Levels of an image, and how they are weighed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Blend {
+    pub(super) fine: usize,
+    pub(super) coarse: usize,
+    /// Weight of the coarse one; 0 if it need not be read.
+    pub(super) share: f32,
+    /// Filter between texels.
+    pub(super) filter: Filter,
+}
+
+/// The texels of a level.
+pub(super) trait Texels {
+    /// Width and height.
+    fn size(&self) -> (u32, u32);
+    /// Linear RGBA of texel number `i`, row by row from the top.
+    fn texel(&self, i: usize) -> Vec4;
+}
+
+/// The texels of a level as the image has them.
+pub(super) struct Encoded<'a> {
+    level: &'a ImageLevel,
+    /// What the bytes of the colour channels mean.
+    decode: &'a [f32; 256],
+}
+
+impl<'a> Encoded<'a> {
+    #[inline(always)]
+    pub(super) const fn of(level: &'a ImageLevel, decode: &'a [f32; 256]) -> Self {
+        Self { level, decode }
+    }
+}
+
+impl Texels for Encoded<'_> {
+    #[inline(always)]
+    fn size(&self) -> (u32, u32) {
+        (self.level.width, self.level.height)
+    }
+
+    #[inline(always)]
+    fn texel(&self, i: usize) -> Vec4 {
+        let [r, g, b, a] = self.level.texels[i];
+        let decode = |byte: u8| self.decode[usize::from(byte)];
+        Vec4::new(decode(r), decode(g), decode(b), srgb::UNIT[usize::from(a)])
     }
 }
 
@@ -113,6 +140,16 @@ fn level_of(texels: f32, last: usize) -> Option<f32> {
         return Some(last as f32);
     }
     Some(libm::log2f(texels).min(last as f32))
+}
+
+/// The largest integer that is no larger: [`f32::floor`] but for the sign of zero, without the call that it is on processors
+/// that cannot be relied on to have an instruction for it.
+#[inline(always)]
+fn floor(x: f32) -> f32 {
+    let towards_zero = x as i32 as f32;
+    let floor = if towards_zero > x { towards_zero - 1.0 } else { towards_zero };
+    // From here on there are only integers.
+    if x.abs() < 8_388_608.0 { floor } else { x }
 }
 
 #[inline(always)]
@@ -135,11 +172,11 @@ impl Taps {
         let x = wrap.reduce(coordinate) * size as f32;
         match filter {
             Filter::Nearest => {
-                let texel = wrap.texel(x.floor() as i64, size);
+                let texel = wrap.texel(floor(x) as i64, size);
                 Self { first: texel, second: texel, share: 0.0 }
             }
             Filter::Linear => {
-                let left = (x - 0.5).floor();
+                let left = floor(x - 0.5);
                 let (first, second) = (wrap.texel(left as i64, size), wrap.texel(left as i64 + 1, size));
                 Self { first, second, share: x - 0.5 - left }
             }
@@ -155,8 +192,8 @@ impl Wrap {
             return 0.0;
         }
         match self {
-            Self::Repeat => coordinate - coordinate.floor(),
-            Self::Mirror => coordinate - 2.0 * (0.5 * coordinate).floor(),
+            Self::Repeat => coordinate - floor(coordinate),
+            Self::Mirror => coordinate - 2.0 * floor(0.5 * coordinate),
             Self::Clamp => coordinate.clamp(-1.0, 2.0),
         }
     }
@@ -203,6 +240,15 @@ mod tests {
                 let expected = (level > 0.0).then(|| level.min(last as f32));
                 assert_eq!(level_of(texels, last), expected, "{texels} of {last}");
             }
+        }
+    }
+
+    #[test]
+    fn floors() {
+        let near = |x: f32| [x.next_down(), x, x.next_up(), -x, (-x).next_up(), (-x).next_down()];
+        let values = [0.0, 0.5, 1.0, 1.5, 2.0, 1e-40, 4_194_303.5, 8_388_607.0, 8_388_608.0, 3e9, 1e30];
+        for x in values.into_iter().flat_map(near) {
+            assert_eq!(floor(x), x.floor(), "{x:?}");
         }
     }
 

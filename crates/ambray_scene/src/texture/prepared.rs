@@ -4,8 +4,10 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec4};
 
-use super::{Filter, Image, ImageLevel, Sampler};
-use crate::srgb;
+use super::{
+    Filter, Image, ImageLevel, Sampler,
+    lookup::{Encoded, Texels},
+};
 
 /// Texels of the largest level that is kept decoded. Bounced light reads footprints of a tenth of the radius and more, which
 /// is this level or a smaller one for all but the closest hits; 64 × 64 texels are 64 KiB, all levels below another third.
@@ -35,10 +37,8 @@ impl PreparedTexture {
                 return FINE;
             }
             let start = texels.len() as u32;
-            texels.extend(level.texels.iter().map(|texel| {
-                let [r, g, b, a] = texel.map(usize::from);
-                Vec4::new(decode[r], decode[g], decode[b], srgb::UNIT[a])
-            }));
+            let encoded = Encoded::of(level, decode);
+            texels.extend((0..level.texels.len()).map(|i| encoded.texel(i)));
             start
         };
         let starts = image.levels.iter().map(&mut place).collect();
@@ -48,18 +48,46 @@ impl PreparedTexture {
     /// The bits of [`Sampler::sample`].
     #[inline(always)]
     pub(crate) fn sample(&self, uv: Vec2, width: f32) -> Vec4 {
-        let texels = width * self.texels_across;
-        self.sampler.over_levels(self.starts.len(), texels, |level, filter| self.read(level, filter, uv))
+        let blend = self.sampler.blend(self.starts.len(), width * self.texels_across);
+        let fine = self.read(blend.fine, blend.filter, uv);
+        if blend.share == 0.0 {
+            return fine;
+        }
+        fine.lerp(self.read(blend.coarse, blend.filter, uv), blend.share)
     }
 
     #[inline(always)]
     fn read(&self, level: usize, filter: Filter, uv: Vec2) -> Vec4 {
         let (start, level) = (self.starts[level], &self.image.levels[level]);
         if start == FINE {
-            return self.sampler.at_level(level, self.image.decoder(), filter, uv);
+            return self.read_fine(level, filter, uv);
         }
-        let texels = &self.texels[start as usize..];
-        self.sampler.between_texels((level.width, level.height), filter, uv, |texel| texels[texel])
+        let decoded = Decoded { size: (level.width, level.height), texels: &self.texels[start as usize..] };
+        self.sampler.between_texels(decoded, filter, uv)
+    }
+
+    /// Seldom needed, so its code is not among the rest.
+    #[inline(never)]
+    fn read_fine(&self, level: &ImageLevel, filter: Filter, uv: Vec2) -> Vec4 {
+        self.sampler.between_texels(Encoded::of(level, self.image.decoder()), filter, uv)
+    }
+}
+
+/// Decoded texels of a level, and of those after it.
+struct Decoded<'a> {
+    size: (u32, u32),
+    texels: &'a [Vec4],
+}
+
+impl Texels for Decoded<'_> {
+    #[inline(always)]
+    fn size(&self) -> (u32, u32) {
+        self.size
+    }
+
+    #[inline(always)]
+    fn texel(&self, i: usize) -> Vec4 {
+        self.texels[i]
     }
 }
 
