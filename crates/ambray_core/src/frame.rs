@@ -173,6 +173,8 @@ pub struct StageTimes {
     pub ambient: Duration,
     /// Geometry-aware filter and composition.
     pub filter: Duration,
+    /// Tracing rays, of whatever type: part of the stages above. Zero on a device, whose passes cannot tell it apart.
+    pub tracing: Duration,
     /// Bending the vertices of what deforms to the pose of the frame.
     pub deformation: Duration,
     /// Refitting or rebuilding the bottom-level structures of what deforms.

@@ -53,12 +53,16 @@ impl Openness {
     #[inline(always)]
     #[must_use]
     pub fn at_each<const L: usize>(&self, distances: &[f32; L]) -> [f32; L] {
+        let mut mu = [0.0; L];
         match *self {
             Self::Power { radius, exponent: 1.0 } => {
-                distances.map(|d| if d >= radius { 1.0 } else { d / radius })
+                for (mu, &d) in mu.iter_mut().zip(distances) {
+                    *mu = if d >= radius { 1.0 } else { d / radius };
+                }
             }
-            _ => distances.map(|d| self.at(d)),
+            _ => mu.iter_mut().zip(distances).for_each(|(mu, &d)| *mu = self.at(d)),
         }
+        mu
     }
 
     /// Distance from which μ is 1: the `t_max` of ambient rays. Infinite for [`Openness::Exponential`].

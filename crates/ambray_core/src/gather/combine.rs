@@ -82,7 +82,8 @@ impl<const L: usize> Sums<L> {
     #[inline(always)]
     fn add(&mut self, params: &GatherParams<'_>, samples: &Samples, slot: usize) {
         let distance: &[f32; L] = group(&samples.distance, slot);
-        let mu = params.openness.at_each(distance).map(f64::from);
+        let mu = params.openness.at_each(distance);
+        let mu: [f64; L] = from_fn(|lane| f64::from(mu[lane]));
         // Where radiance is added with other weights, it is the share of the hit that is not open.
         let near = |lane: usize| distance[lane] < params.near_limit;
         let weight: [f64; L] = match params.near_radiance {

@@ -185,16 +185,35 @@ impl FirstBatch {
             *seed = pcg(hash ^ salt);
         }
         let t_max = params.openness.reach();
-        let (first, slot) = (run.first as u32, slot as u32);
-        let [x, y, z] = samples.direction.each_ref().map(|plane| &plane[slot as usize..][..run.points]);
-        let above = &samples.distance[slot as usize..][..run.points];
-        for i in 0..run.points {
-            if above[i] > 0.0 {
-                let direction = Vec3::new(x[i], y[i], z[i]);
-                self.rays.push(Ray { origin: starts.origins[i], t_max, direction, seed: starts.seeds[i] });
-                self.slots.push(slot + i as u32);
-                self.owners.push(first + i as u32);
-            }
+        in_groups!(run.points, push_group(self, t_max, run.first, slot));
+    }
+}
+
+/// Adds the rays of the `L` points from `at` on that are above their horizon.
+#[inline(always)]
+fn push_group<const L: usize>(at: usize, batch: &mut FirstBatch, t_max: f32, first: usize, slot: usize) {
+    let FirstBatch { samples, rays, slots, owners, starts, .. } = batch;
+    let [x, y, z] = samples.direction.each_ref().map(|plane| group::<L>(plane, slot + at));
+    let origins: &[Vec3; L] = starts.origins[at..at + L].try_into().expect("L origins");
+    let seeds: &[u32; L] = starts.seeds[at..at + L].try_into().expect("L seeds");
+    let above = group::<L>(&samples.distance, slot + at);
+    let direction = |lane: usize| Vec3::new(x[lane], y[lane], z[lane]);
+    let ray =
+        |lane: usize| Ray { origin: origins[lane], t_max, direction: direction(lane), seed: seeds[lane] };
+    let (slot, owner) = ((slot + at) as u32, (first + at) as u32);
+    let count: u32 = above.iter().map(|&distance| u32::from(distance > 0.0)).sum();
+    if count as usize == L {
+        // All at once, as on every flat surface.
+        rays.extend_from_slice(&from_fn::<_, L, _>(ray));
+        slots.extend_from_slice(&from_fn::<_, L, _>(|lane| slot + lane as u32));
+        owners.extend_from_slice(&from_fn::<_, L, _>(|lane| owner + lane as u32));
+        return;
+    }
+    for lane in 0..L {
+        if above[lane] > 0.0 {
+            rays.push(ray(lane));
+            slots.push(slot + lane as u32);
+            owners.push(owner + lane as u32);
         }
     }
 }

@@ -40,6 +40,7 @@ use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 pub(crate) use pass1::TILE;
 pub use world::CpuWorld;
 
+use pass1::Scratches;
 use planes::Planes;
 use temporal::{History, Sequel};
 
@@ -74,6 +75,8 @@ pub struct CpuBackend {
     history: Mutex<Option<History>>,
     /// Planes for the next frame.
     planes: Mutex<Planes>,
+    /// Buffers for its tasks.
+    scratches: Scratches,
     /// The threads of the last call, kept for the next one.
     pool: Mutex<Option<(usize, Arc<ThreadPool>)>>,
 }
@@ -89,6 +92,7 @@ impl CpuBackend {
             rendered: AtomicBool::new(false),
             history: Mutex::default(),
             planes: Mutex::default(),
+            scratches: Scratches::default(),
             pool: Mutex::default(),
         }
     }
@@ -121,7 +125,16 @@ impl CpuBackend {
             let (sequel, isa) = (accumulation.as_ref(), self.world.isa());
             // Taken out, so that frames that are rendered at once do not wait for each other.
             let mut planes = std::mem::take(&mut *self.planes());
-            let mut pass1 = pass1::run(&self.world, settings, view, &params, sequel, &mut planes, control)?;
+            let mut pass1 = pass1::run(
+                &self.world,
+                settings,
+                view,
+                &params,
+                sequel,
+                &mut planes,
+                &self.scratches,
+                control,
+            )?;
             let mut times = pass1.clock.shares(pass1.elapsed);
             let pass2 = if settings.method.is_screen_space() {
                 let rival = rival::run(&self.world, settings, view, &params, &mut pass1, control)?;

@@ -1,7 +1,12 @@
 //! Pass 1: primary visibility, direct light, openness and near radiance (spec §4), tile by tile.
 
 use std::{
-    sync::atomic::{AtomicUsize, Ordering},
+    iter::repeat_with,
+    ops::Range,
+    sync::{
+        Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicUsize, Ordering},
+    },
     time::{Duration, Instant},
 };
 
@@ -25,11 +30,14 @@ use super::{
     stages::{Clock, Stage},
     temporal::Sequel,
     vectors::{self, Work},
-    world::CpuWorld,
+    world::{CpuWorld, Timed},
 };
 
 /// Pixels a side of a tile: 16 pixels of each class, a packet of parallel rays.
 pub(crate) const TILE: usize = 16;
+
+/// Pixels in a row of a task: small enough that all threads end at the same time, large enough that tasks cost nothing.
+const SEGMENT: usize = 4 * TILE;
 
 /// What pass 1 leaves for pass 2, row by row from the top.
 #[derive(Debug)]
@@ -49,35 +57,77 @@ pub(super) struct Pass1 {
     pub(super) elapsed: Duration,
 }
 
-/// Rows of a band of tiles, one slice for each plane.
-struct Band<'a> {
-    gbuffer: &'a mut [GBufferPixel],
-    guides: &'a mut [Guide],
-    then: &'a mut [Guide],
-    ambient: &'a mut [Vec4],
-    second: &'a mut [Vec4],
-    bent: &'a mut [Vec4],
+/// Some tiles side by side: for each plane the slices that are their rows. The pixel at `(row, column)` is that at
+/// (`x0` + column, `y0` + row) of the picture.
+struct Segment<'a> {
+    x0: usize,
+    y0: usize,
+    gbuffer: Rows<'a, GBufferPixel>,
+    guides: Rows<'a, Guide>,
+    /// Empty unless light is accumulated.
+    then: Rows<'a, Guide>,
+    ambient: Rows<'a, Vec4>,
+    /// Empty where the minimum is taken before the filter.
+    second: Rows<'a, Vec4>,
+    bent: Rows<'a, Vec4>,
 }
 
-impl Band<'_> {
-    /// Pixel `i` sees no surface: its planes are those of an open place before the `background`.
-    fn see_nothing(&mut self, i: usize, background: Vec3) {
-        self.gbuffer[i] = GBufferPixel { emission: background, rays: 1, ..GBufferPixel::NOTHING };
-        self.guides[i] = Guide::NOTHING;
-        if let Some(then) = self.then.get_mut(i) {
-            *then = Guide::NOTHING;
-        }
-        self.leave_open(i);
+/// Rows of a segment.
+type Rows<'a, T> = Vec<&'a mut [T]>;
+
+/// Row and column in a segment.
+type Place = (usize, usize);
+
+impl<'a> Segment<'a> {
+    /// Cuts the planes of `pass` to segments, row by row of tiles.
+    fn all(pass: &'a mut Pass1, width: usize) -> Vec<Self> {
+        let places = (0..).flat_map(|band| (0..width).step_by(SEGMENT).map(move |x0| (x0, band * TILE)));
+        let always = cut(&mut pass.gbuffer, width).zip(cut(&mut pass.guides, width));
+        let always = always.zip(cut(&mut pass.ambient, width)).zip(cut(&mut pass.bent, width));
+        let then = cut(&mut pass.then, width).chain(repeat_with(Vec::new));
+        let second = cut(&mut pass.second, width).chain(repeat_with(Vec::new));
+        places
+            .zip(always.zip(then.zip(second)))
+            .map(|((x0, y0), ((((gbuffer, guides), ambient), bent), (then, second)))| Self {
+                x0,
+                y0,
+                gbuffer,
+                guides,
+                then,
+                ambient,
+                second,
+                bent,
+            })
+            .collect()
     }
 
-    /// Nothing is gathered at pixel `i`.
-    fn leave_open(&mut self, i: usize) {
-        self.ambient[i] = Vec4::X;
-        self.bent[i] = Vec4::ZERO;
-        if let Some(second) = self.second.get_mut(i) {
-            *second = Vec4::X;
+    /// A pixel sees no surface: its planes are those of an open place before the `background`.
+    fn see_nothing(&mut self, (row, column): Place, background: Vec3) {
+        self.gbuffer[row][column] = GBufferPixel { emission: background, rays: 1, ..GBufferPixel::NOTHING };
+        self.guides[row][column] = Guide::NOTHING;
+        if let Some(then) = self.then.get_mut(row) {
+            then[column] = Guide::NOTHING;
+        }
+        self.leave_open((row, column));
+    }
+
+    /// Nothing is gathered at a pixel.
+    fn leave_open(&mut self, (row, column): Place) {
+        self.ambient[row][column] = Vec4::X;
+        self.bent[row][column] = Vec4::ZERO;
+        if let Some(second) = self.second.get_mut(row) {
+            second[column] = Vec4::X;
         }
     }
+}
+
+/// The rows of each segment of a plane; none of an empty one.
+fn cut<T>(plane: &mut [T], width: usize) -> impl Iterator<Item = Rows<'_, T>> {
+    plane.chunks_mut(TILE * width).flat_map(move |band| {
+        let mut rows: Vec<_> = band.chunks_mut(width).map(|row| row.chunks_mut(SEGMENT)).collect();
+        let segment = move |_| rows.iter_mut().filter_map(Iterator::next).collect();
+        (0..width.div_ceil(SEGMENT)).map(segment)
+    })
 }
 
 /// What is the same for all tiles.
@@ -90,13 +140,12 @@ struct Job<'a> {
     clock: &'a Clock,
 }
 
-/// A tile to be rendered: its first pixel is (`x0`, `y0`), which is the row where `band` starts.
+/// A tile to be rendered: `columns` of a segment.
 struct Tile<'t, 'a> {
     job: &'t Job<'a>,
     scratch: &'t mut Scratch,
-    band: &'t mut Band<'a>,
-    x0: usize,
-    y0: usize,
+    segment: &'t mut Segment<'a>,
+    columns: Range<usize>,
     counts: &'t mut RayCounts,
 }
 
@@ -105,17 +154,17 @@ impl Work for Tile<'_, '_> {
 
     #[inline(always)]
     fn run(self) {
-        self.job.tile(self.scratch, self.band, self.x0, self.y0, self.counts);
+        self.job.tile(self.scratch, self.segment, self.columns, self.counts);
     }
 }
 
 /// Buffers of one thread, reused from tile to tile.
-#[derive(Default)]
-struct Scratch {
+#[derive(Debug, Default)]
+pub(super) struct Scratch {
     rays: Vec<Ray>,
     hits: Vec<Hit>,
-    /// Pixels of the tile that see a surface, as index into the band, with their picture coordinates.
-    seen: Vec<(usize, u32, u32)>,
+    /// Pixels of the tile that see a surface.
+    seen: Vec<Place>,
     receivers: Vec<Receiver>,
     received: Vec<Received>,
     direct: DirectScratch,
@@ -131,6 +180,7 @@ pub(super) fn run(
     params: &GatherParams<'_>,
     sequel: Option<&Sequel<'_>>,
     planes: &mut Planes,
+    scratches: &Scratches,
     control: Control<'_>,
 ) -> Result<Pass1, Cancelled> {
     let start = Instant::now();
@@ -148,38 +198,29 @@ pub(super) fn run(
         clock: Clock::default(),
         elapsed: Duration::ZERO,
     };
-    let rows = TILE * width as usize;
-    let bands =
-        pass.gbuffer.chunks_mut(rows).zip(pass.guides.chunks_mut(rows)).zip(pass.ambient.chunks_mut(rows));
-    let second = pass.second.chunks_mut(rows).map(Some).chain(std::iter::repeat_with(|| None));
-    let then = pass.then.chunks_mut(rows).map(Some).chain(std::iter::repeat_with(|| None));
-    let bands: Vec<Band<'_>> = bands
-        .zip(second.zip(then).zip(pass.bent.chunks_mut(rows)))
-        .map(|(((gbuffer, guides), ambient), ((second, then), bent))| Band {
-            gbuffer,
-            guides,
-            then: then.unwrap_or_default(),
-            ambient,
-            second: second.unwrap_or_default(),
-            bent,
-        })
-        .collect();
-
-    let job = Job { world, settings, view, params, sequel, clock: &pass.clock };
-    let (count, done) = (bands.len(), AtomicUsize::new(0));
-    let counts = bands.into_par_iter().enumerate().map_init(Scratch::default, |scratch, (i, mut band)| {
-        let mut counts = RayCounts::default();
-        for tile in 0..(width as usize).div_ceil(TILE) {
+    let (width, clock) = (width as usize, Clock::default());
+    let job = Job { world, settings, view, params, sequel, clock: &clock };
+    let segments = Segment::all(&mut pass, width);
+    let (count, done, in_a_row) = (segments.len(), AtomicUsize::new(0), width.div_ceil(SEGMENT));
+    let counts = segments.into_par_iter().with_max_len(1).map(|mut segment| {
+        let (mut counts, mut scratch) = (RayCounts::default(), scratches.take());
+        let columns = segment.gbuffer[0].len();
+        for first in (0..columns).step_by(TILE) {
             control.check()?;
-            let (job, band, counts) = (&job, &mut band, &mut counts);
-            let tile = Tile { job, scratch, band, x0: tile * TILE, y0: i * TILE, counts };
-            vectors::run(world.isa(), tile);
+            let (scratch, segment, counts) = (&mut scratch, &mut segment, &mut counts);
+            let columns = first..columns.min(first + TILE);
+            vectors::run(world.isa(), Tile { job: &job, scratch, segment, columns, counts });
         }
+        scratches.give(scratch);
         let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-        (control.progress)(done as f32 / count as f32);
+        if done % in_a_row == 0 {
+            (control.progress)(done as f32 / count as f32);
+        }
         Ok(counts)
     });
-    pass.rays = counts.try_reduce(RayCounts::default, |a, b| Ok(a + b))?;
+    let rays = counts.try_reduce(RayCounts::default, |a, b| Ok(a + b))?;
+    pass.rays = rays;
+    pass.clock = clock;
     pass.elapsed = start.elapsed();
     Ok(pass)
 }
@@ -187,53 +228,73 @@ pub(super) fn run(
 impl Job<'_> {
     /// All stages of a [`Tile`].
     #[inline(always)]
-    fn tile(&self, scratch: &mut Scratch, band: &mut Band<'_>, x0: usize, y0: usize, counts: &mut RayCounts) {
+    fn tile(
+        &self,
+        scratch: &mut Scratch,
+        segment: &mut Segment<'_>,
+        columns: Range<usize>,
+        counts: &mut RayCounts,
+    ) {
+        let world = Timed::new(self.world);
         let start = Instant::now();
-        self.primary(scratch, band, x0, y0);
+        self.primary(&world, scratch, segment, columns);
         counts.primary += scratch.rays.len() as u64;
         let start = self.clock.book(Stage::Primary, start);
-        counts.shadow += self.direct(scratch, band);
+        counts.shadow += self.direct(&world, scratch, segment);
         let start = self.clock.book(Stage::Direct, start);
         // Methods in screen space need the whole G-buffer first.
         if self.settings.method.is_screen_space() {
-            scratch.seen.iter().for_each(|&(i, ..)| band.leave_open(i));
+            scratch.seen.iter().for_each(|&place| segment.leave_open(place));
         } else {
-            self.ambient(scratch, band, counts);
+            self.ambient(&world, scratch, segment, counts);
             self.clock.book(Stage::Ambient, start);
         }
+        self.clock.book_tracing(world.tracing());
     }
 
     /// What each pixel sees.
     #[inline(always)]
-    fn primary(&self, scratch: &mut Scratch, band: &mut Band<'_>, x0: usize, y0: usize) {
-        let width = self.view.camera.size().0 as usize;
-        let (columns, rows) = (TILE.min(width - x0), band.gbuffer.len() / width);
-        let pixels =
-            (0..rows).flat_map(|row| (x0..x0 + columns).map(move |x| (row * width + x, x, y0 + row)));
+    fn primary(
+        &self,
+        world: &Timed<'_>,
+        scratch: &mut Scratch,
+        segment: &mut Segment<'_>,
+        columns: Range<usize>,
+    ) {
+        let (x0, y0, rows) = (segment.x0, segment.y0, segment.gbuffer.len());
+        let places = (0..rows).flat_map(|row| columns.clone().map(move |column| (row, column)));
         let frame = self.settings.frame;
         scratch.rays.clear();
-        scratch.rays.extend(pixels.clone().map(|(_, x, y)| {
-            let (x, y) = (x as u32, y as u32);
+        scratch.rays.extend(places.clone().map(|(row, column)| {
+            let (x, y) = ((x0 + column) as u32, (y0 + row) as u32);
             self.view.camera.primary_ray(x, y, PixelKey::primary_seed(x, y, frame))
         }));
         scratch.hits.resize(scratch.rays.len(), Hit::MISS);
-        self.world.closest_hits(&scratch.rays, &mut scratch.hits);
+        world.closest_hits(&scratch.rays, &mut scratch.hits);
 
         scratch.seen.clear();
-        for ((i, x, y), (ray, hit)) in pixels.zip(scratch.rays.iter().zip(&scratch.hits)) {
-            if hit.is_hit() {
-                let pixel = &mut band.gbuffer[i];
-                (*pixel, band.guides[i]) = self.surface(ray, hit);
-                if let Some(sequel) = self.sequel {
-                    let then = sequel.then(self.world.surfaces(), self.settings, &band.guides[i], ray, hit);
-                    band.then[i] = then;
-                    pixel.motion = sequel.motion((x, y), &then);
-                }
-                scratch.seen.push((i, x as u32, y as u32));
-            } else {
-                band.see_nothing(i, self.view.background);
+        for ((row, column), (ray, hit)) in places.zip(scratch.rays.iter().zip(&scratch.hits)) {
+            if !hit.is_hit() {
+                segment.see_nothing((row, column), self.view.background);
+                continue;
             }
+            let pixel = &mut segment.gbuffer[row][column];
+            let guide = &mut segment.guides[row][column];
+            (*pixel, *guide) = self.surface(ray, hit);
+            if let Some(sequel) = self.sequel {
+                let then = sequel.then(self.world.surfaces(), self.settings, guide, ray, hit);
+                segment.then[row][column] = then;
+                pixel.motion = sequel.motion((x0 + column, y0 + row), &then);
+            }
+            scratch.seen.push((row, column));
         }
+    }
+
+    /// Key of a pixel of a segment whose first one is at (`x0`, `y0`).
+    #[inline(always)]
+    fn key(&self, (x0, y0): (usize, usize), (row, column): Place) -> PixelKey {
+        let (x, y) = ((x0 + column) as u32, (y0 + row) as u32);
+        PixelKey::new(x, y, self.settings.frame, self.settings.seed)
     }
 
     /// Attributes of the surface that a primary ray hit.
@@ -272,19 +333,24 @@ impl Job<'_> {
     }
 
     /// Direct light; returns the shadow rays traced.
-    fn direct(&self, scratch: &mut Scratch, band: &mut Band<'_>) -> u64 {
-        let (frame, seed) = (self.settings.frame, self.settings.seed);
+    #[inline(always)]
+    fn direct(&self, world: &Timed<'_>, scratch: &mut Scratch, segment: &mut Segment<'_>) -> u64 {
+        if self.view.lights.is_empty() {
+            for &(row, column) in &scratch.seen {
+                segment.gbuffer[row][column].direct = Vec3::ZERO;
+            }
+            return 0;
+        }
+        let origin = (segment.x0, segment.y0);
         scratch.receivers.clear();
-        let receiver =
-            |&(i, x, y): &(usize, u32, u32)| band.gbuffer[i].receiver(PixelKey::new(x, y, frame, seed));
+        let receiver = |&place: &Place| segment.gbuffer[place.0][place.1].receiver(self.key(origin, place));
         scratch.receivers.extend(scratch.seen.iter().map(receiver));
-        scratch.received.clear();
         scratch.received.resize(scratch.receivers.len(), Received::default());
         let lighting = DirectLighting { lights: &self.view.lights, offset: self.view.offset, shadows: true };
         let (receivers, received) = (&scratch.receivers, &mut scratch.received);
-        direct_irradiance(self.world, lighting, receivers, &mut scratch.direct, received);
-        for (&(i, ..), received) in scratch.seen.iter().zip(&scratch.received) {
-            let pixel = &mut band.gbuffer[i];
+        direct_irradiance(world, lighting, receivers, &mut scratch.direct, received);
+        for (&(row, column), received) in scratch.seen.iter().zip(&scratch.received) {
+            let pixel = &mut segment.gbuffer[row][column];
             pixel.direct = reflected(pixel.albedo, received.irradiance);
             pixel.rays += received.shadow_rays;
         }
@@ -293,29 +359,53 @@ impl Job<'_> {
 
     /// Openness, near radiance and bent normal.
     #[inline(always)]
-    fn ambient(&self, scratch: &mut Scratch, band: &mut Band<'_>, counts: &mut RayCounts) {
-        let (frame, seed) = (self.settings.frame, self.settings.seed);
-        // Class by class, so that the rays of a run share their directions on flat surfaces.
-        scratch.seen.sort_by_key(|&(i, x, y)| (ambray_core::sampling::sample_class(x, y), i));
+    fn ambient(
+        &self,
+        world: &Timed<'_>,
+        scratch: &mut Scratch,
+        segment: &mut Segment<'_>,
+        counts: &mut RayCounts,
+    ) {
+        let origin = (segment.x0, segment.y0);
         scratch.points.clear();
-        let point =
-            |&(i, x, y): &(usize, u32, u32)| band.gbuffer[i].shaded_point(PixelKey::new(x, y, frame, seed));
+        // Class by class, so that the rays of a run share their directions on flat surfaces.
+        scratch.seen.sort_unstable_by_key(|&place| (self.key(origin, place).class, place));
+        let point = |&place: &Place| segment.gbuffer[place.0][place.1].shaded_point(self.key(origin, place));
         scratch.points.extend(scratch.seen.iter().map(point));
-        scratch.gathered.clear();
         scratch.gathered.resize(scratch.points.len(), Gathered::default());
-        gather(self.world, self.params, &scratch.points, &mut scratch.gather, &mut scratch.gathered);
+        gather(world, self.params, &scratch.points, &mut scratch.gather, &mut scratch.gathered);
 
-        for (&(i, ..), gathered) in scratch.seen.iter().zip(&scratch.gathered) {
-            let (ambient, second) = gathered.before_filter(!band.second.is_empty());
-            band.ambient[i] = ambient;
+        for (&(row, column), gathered) in scratch.seen.iter().zip(&scratch.gathered) {
+            let (ambient, second) = gathered.before_filter(!segment.second.is_empty());
+            segment.ambient[row][column] = ambient;
             if let Some(second) = second {
-                band.second[i] = second;
+                segment.second[row][column] = second;
             }
-            band.bent[i] = gathered.bent.extend(gathered.changing);
-            band.gbuffer[i].rays += gathered.ambient_rays + gathered.chord_rays + gathered.shadow_rays;
+            segment.bent[row][column] = gathered.bent.extend(gathered.changing);
+            segment.gbuffer[row][column].rays +=
+                gathered.ambient_rays + gathered.chord_rays + gathered.shadow_rays;
             counts.ambient += u64::from(gathered.ambient_rays);
             counts.chord += u64::from(gathered.chord_rays);
             counts.shadow += u64::from(gathered.shadow_rays);
         }
+    }
+}
+
+/// Buffers of threads, kept from task to task and from frame to frame.
+#[derive(Debug, Default)]
+pub(super) struct Scratches(Mutex<Vec<Scratch>>);
+
+impl Scratches {
+    fn take(&self) -> Scratch {
+        self.lock().pop().unwrap_or_default()
+    }
+
+    fn give(&self, scratch: Scratch) {
+        self.lock().push(scratch);
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Vec<Scratch>> {
+        // Whole at any time, so a panic of another thread does not matter.
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

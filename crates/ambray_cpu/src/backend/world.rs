@@ -1,6 +1,12 @@
 //! The scene as the method sees it: the tracer for hits, the scene's surfaces for what is there.
 
-use std::sync::Arc;
+use std::{
+    sync::{
+        Arc,
+        atomic::{AtomicU64, Ordering},
+    },
+    time::Instant,
+};
 
 use ambray_core::frame::PoseStats;
 use ambray_core::trace::{Diffuse, Hit, Motion, Ray, Trace, World};
@@ -68,5 +74,56 @@ impl World for CpuWorld {
     #[inline(always)]
     fn albedos_at(&self, rays: &[Ray], hits: &[Hit], cone: f32, albedos: &mut [Vec3]) {
         self.surfaces.albedos_at(rays, hits, cone, albedos);
+    }
+}
+
+/// A world that measures the time for which it traces rays.
+#[derive(Debug)]
+pub(super) struct Timed<'w> {
+    world: &'w CpuWorld,
+    nanoseconds: AtomicU64,
+}
+
+impl<'w> Timed<'w> {
+    pub(super) const fn new(world: &'w CpuWorld) -> Self {
+        Self { world, nanoseconds: AtomicU64::new(0) }
+    }
+
+    /// Nanoseconds spent tracing so far.
+    pub(super) fn tracing(&self) -> u64 {
+        self.nanoseconds.load(Ordering::Relaxed)
+    }
+
+    /// Batches are thousands of rays, for which two looks at a clock are nothing.
+    fn timed(&self, trace: impl FnOnce(&CpuWorld)) {
+        let start = Instant::now();
+        trace(self.world);
+        let elapsed = u64::try_from(start.elapsed().as_nanos()).unwrap_or(u64::MAX);
+        self.nanoseconds.fetch_add(elapsed, Ordering::Relaxed);
+    }
+}
+
+impl Trace for Timed<'_> {
+    fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit]) {
+        self.timed(|world| world.closest_hits(rays, hits));
+    }
+
+    fn any_hits(&self, rays: &[Ray], blocked: &mut [bool]) {
+        self.timed(|world| world.any_hits(rays, blocked));
+    }
+}
+
+impl World for Timed<'_> {
+    fn motion(&self, instance: u32) -> Motion {
+        self.world.motion(instance)
+    }
+
+    fn diffuse_at(&self, ray: &Ray, hit: &Hit, width: f32) -> Diffuse {
+        self.world.diffuse_at(ray, hit, width)
+    }
+
+    #[inline(always)]
+    fn albedos_at(&self, rays: &[Ray], hits: &[Hit], cone: f32, albedos: &mut [Vec3]) {
+        self.world.albedos_at(rays, hits, cone, albedos);
     }
 }

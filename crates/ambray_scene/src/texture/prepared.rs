@@ -21,8 +21,15 @@ pub(crate) struct PreparedTexture {
     texels_across: f32,
     /// The coarse levels' texels, linear, level after level.
     texels: Vec<Vec4>,
-    /// Where each level begins in `texels`; [`FINE`] for those that are not there.
-    starts: Vec<u32>,
+    levels: Vec<Level>,
+}
+
+/// A level of the image.
+#[derive(Clone, Copy, Debug)]
+struct Level {
+    size: (u32, u32),
+    /// Where it begins among the decoded texels; [`FINE`] if it is not there.
+    start: u32,
 }
 
 /// Not decoded.
@@ -33,22 +40,23 @@ impl PreparedTexture {
     pub(crate) fn new(image: &Arc<Image>, sampler: Sampler) -> Self {
         let (decode, mut texels) = (image.decoder(), Vec::new());
         let mut place = |level: &ImageLevel| {
+            let size = (level.width, level.height);
             if level.texels.len() > DECODED_TEXELS {
-                return FINE;
+                return Level { size, start: FINE };
             }
             let start = texels.len() as u32;
             let encoded = Encoded::of(level, decode);
             texels.extend((0..level.texels.len()).map(|i| encoded.texel(i)));
-            start
+            Level { size, start }
         };
-        let starts = image.levels.iter().map(&mut place).collect();
-        Self { image: Arc::clone(image), sampler, texels_across: image.texels_across(), texels, starts }
+        let levels = image.levels.iter().map(&mut place).collect();
+        Self { image: Arc::clone(image), sampler, texels_across: image.texels_across(), texels, levels }
     }
 
     /// The bits of [`Sampler::sample`].
     #[inline(always)]
     pub(crate) fn sample(&self, uv: Vec2, width: f32) -> Vec4 {
-        let blend = self.sampler.blend(self.starts.len(), width * self.texels_across);
+        let blend = self.sampler.blend(self.levels.len(), width * self.texels_across);
         let fine = self.read(blend.fine, blend.filter, uv);
         if blend.share == 0.0 {
             return fine;
@@ -58,11 +66,11 @@ impl PreparedTexture {
 
     #[inline(always)]
     fn read(&self, level: usize, filter: Filter, uv: Vec2) -> Vec4 {
-        let (start, level) = (self.starts[level], &self.image.levels[level]);
+        let Level { size, start } = self.levels[level];
         if start == FINE {
-            return self.read_fine(level, filter, uv);
+            return self.read_fine(&self.image.levels[level], filter, uv);
         }
-        let decoded = Decoded { size: (level.width, level.height), texels: &self.texels[start as usize..] };
+        let decoded = Decoded { size, texels: &self.texels[start as usize..] };
         self.sampler.between_texels(decoded, filter, uv)
     }
 
