@@ -1,16 +1,18 @@
 //! From a hit to the attributes of the surface there.
 
 mod albedo;
+mod at;
 
 use std::sync::Arc;
 
 use ambray_core::trace::{Diffuse, Hit, Ray, alpha_threshold};
-use glam::{Affine3A, Mat3A, Vec2, Vec3, Vec3A, Vec4};
+use glam::{Affine3A, Mat3A, Vec2, Vec3};
 
 use crate::implicit::{ShapeFrame, ShapePoint};
 use crate::{AlphaMode, Instance, Material, MaterialKind, Mesh, Motion, Scene, ShapeInstance, TextureRef};
 
 use albedo::Albedos;
+use at::{At, Face};
 
 /// Answers questions about points on the surfaces of a scene.
 ///
@@ -54,43 +56,6 @@ impl Frame {
 fn shape_frames(scene: &Scene) -> Vec<ShapeFrame> {
     let frame = |i: &ShapeInstance| ShapeFrame::new(i, &scene.shapes[i.shape as usize]);
     scene.shape_instances.iter().map(frame).collect()
-}
-
-/// A triangle in the world.
-#[derive(Clone, Copy, Debug)]
-struct Placed {
-    /// World space.
-    points: [Vec3A; 3],
-    /// Largest magnitude of a component of an edge.
-    scale: f32,
-    /// Normal of the triangle whose edges are those over `scale`, as long as twice its area.
-    scaled_normal: Vec3A,
-    length: f32,
-}
-
-impl Placed {
-    #[inline(always)]
-    fn new(instance: &Instance, mesh: &Mesh, corners: [u32; 3]) -> Self {
-        let point = |i: u32| instance.world_from_object.transform_point3a(mesh.positions[i as usize].into());
-        let points = each(corners, point);
-        let (e1, e2) = (points[1] - points[0], points[2] - points[0]);
-        // Edges of tiny triangles would vanish when multiplied; scaled to unit size they do not.
-        let scale = e1.abs().max(e2.abs()).max_element();
-        let scaled_normal = (e1 / scale).cross(e2 / scale);
-        Self { points, scale, scaled_normal, length: scaled_normal.length() }
-    }
-
-    /// Unit normal on the `side` of the winding; not finite where the triangle has no area.
-    #[inline]
-    fn normal(&self, side: f32) -> Vec3 {
-        (self.scaled_normal * (side / self.length)).into()
-    }
-
-    /// Root of twice the area.
-    #[inline]
-    fn edge(&self) -> f32 {
-        self.scale * self.length.sqrt()
-    }
 }
 
 /// A point on a surface as a camera sees it. Positions and directions are in world space, colours linear RGB.
@@ -239,7 +204,6 @@ impl Surfaces {
     /// The surface at the `hit` of `ray`, its textures averaged over a footprint of `width` scene units; 0 reads them
     /// finest.
     #[must_use]
-    #[inline(always)]
     pub fn surface_at(&self, ray: &Ray, hit: &Hit, width: f32) -> SurfacePoint {
         if let Some(instance) = self.scene.shape_instance(hit.instance) {
             let point = self.shape_point(instance, ray, hit);
@@ -256,19 +220,13 @@ impl Surfaces {
                 unlit: material.unlit,
             };
         }
-        let at = At::new(self, hit, width);
-        let smooth_normal = at.smooth_normal();
-        SurfacePoint {
-            position: at.position(),
-            geometric_normal: at.geometric_normal,
-            reach: at.reach(),
-            smooth_normal,
-            shading_normal: at.shading_normal(smooth_normal),
-            albedo: at.albedo(),
-            emission: at.emission(),
-            material: at.mesh.material,
-            unlit: at.material.unlit,
-        }
+        Face::seen(self, hit).point(hit, width)
+    }
+
+    /// Reads [`surface_at`](Self::surface_at) of many hits, of which neighbours are often on one triangle.
+    #[must_use]
+    pub const fn reader(&self) -> SurfaceReader<'_> {
+        SurfaceReader { surfaces: self, last: None }
     }
 
     /// The part of [`surface_at`](Self::surface_at) that bounced light needs, for about half its cost.
@@ -281,11 +239,12 @@ impl Surfaces {
             let albedo = base_color(material, || object_position);
             return DiffusePoint { position, geometric_normal: normal, reach, albedo };
         }
-        let at = At::new(self, hit, width);
+        let face = Face::new(self, hit);
+        let at = At::new(&face, hit, width);
         DiffusePoint {
             position: at.position(),
             geometric_normal: at.geometric_normal,
-            reach: at.reach(),
+            reach: face.reach,
             albedo: at.albedo(),
         }
     }
@@ -310,7 +269,8 @@ impl Surfaces {
             let normal = earlier.shape_frames[index].normal(normal);
             return (then.world_from_object.transform_point3(object_position), normal, normal);
         }
-        let at = At::new(earlier, hit, 0.0);
+        let face = Face::new(earlier, hit);
+        let at = At::new(&face, hit, 0.0);
         (at.position(), at.geometric_normal, at.smooth_normal())
     }
 
@@ -340,160 +300,28 @@ impl Surfaces {
     }
 }
 
-/// A hit with what all its attributes need.
-struct At<'s> {
-    scene: &'s Scene,
-    frame: &'s Frame,
-    instance: &'s Instance,
-    mesh: &'s Mesh,
-    material: &'s Material,
-    /// Vertex indices.
-    corners: [u32; 3],
-    /// World space.
-    points: [Vec3A; 3],
-    /// Barycentric weights of the corners.
-    weights: [f32; 3],
-    geometric_normal: Vec3,
-    /// Footprint in the unit of triangle edges: its width over the square root of twice the triangle's area.
-    relative_width: f32,
+/// See [`Surfaces::reader`].
+#[derive(Debug)]
+pub struct SurfaceReader<'s> {
+    surfaces: &'s Surfaces,
+    /// What the hits of the last triangle share, with its instance and number.
+    last: Option<(u32, u32, Face<'s>)>,
 }
 
-impl<'s> At<'s> {
+impl SurfaceReader<'_> {
+    /// The bits of [`Surfaces::surface_at`].
+    #[must_use]
     #[inline(always)]
-    fn new(surfaces: &'s Surfaces, hit: &Hit, width: f32) -> Self {
-        let scene = &*surfaces.scene;
-        let (instance, frame) =
-            (&scene.instances[hit.instance as usize], &surfaces.frames[hit.instance as usize]);
-        let mesh = &scene.meshes[instance.mesh as usize];
-        let corners = mesh.triangles[hit.triangle as usize];
-        let placed = Placed::new(instance, mesh, corners);
-        let mut at = Self {
-            scene,
-            frame,
-            instance,
-            mesh,
-            material: &scene.materials[mesh.material as usize],
-            corners,
-            points: placed.points,
-            weights: [1.0 - hit.u - hit.v, hit.u, hit.v],
-            geometric_normal: placed.normal(frame.side),
-            relative_width: width / placed.edge(),
-        };
-        // A triangle without area has no normal of its own.
-        if !at.geometric_normal.is_finite() {
-            at.geometric_normal = at.vertex_normal().unwrap_or(Vec3::Y);
-            at.relative_width = 0.0;
+    pub fn surface_at(&mut self, ray: &Ray, hit: &Hit, width: f32) -> SurfacePoint {
+        if hit.instance as usize >= self.surfaces.scene.instances.len() {
+            return self.surfaces.surface_at(ray, hit, width);
         }
-        at
-    }
-
-    #[inline(always)]
-    fn position(&self) -> Vec3 {
-        // From the first corner along the edges: exact where edges are short and far from the origin.
-        let [a, b, c] = self.points;
-        (a + (b - a) * self.weights[1] + (c - a) * self.weights[2]).into()
-    }
-
-    #[inline(always)]
-    fn reach(&self) -> f32 {
-        let reach = |i: u32| {
-            let magnitude = Vec3A::from(self.mesh.positions[i as usize]).abs();
-            self.frame.magnitude.transform_point3a(magnitude).max_element()
-        };
-        let [a, b, c] = each(self.corners, reach);
-        0.0_f32.max(a).max(b).max(c)
-    }
-
-    #[inline(always)]
-    fn vertex_normal(&self) -> Option<Vec3> {
-        if self.mesh.normals.is_empty() {
-            return None;
+        let known = self.last.as_ref().is_some_and(|last| (last.0, last.1) == (hit.instance, hit.triangle));
+        if !known {
+            self.last = Some((hit.instance, hit.triangle, Face::seen(self.surfaces, hit)));
         }
-        let [a, b, c] = each(self.corners, |i| Vec3A::from(self.mesh.normals[i as usize]));
-        let object = a * self.weights[0] + b * self.weights[1] + c * self.weights[2];
-        let world: Vec3 = (self.frame.normal_from_object * object).into();
-        // The matrix may be tiny or huge; a direction is left as long as a component is.
-        (world / world.abs().max_element()).try_normalize()
-    }
-
-    #[inline(always)]
-    fn smooth_normal(&self) -> Vec3 {
-        self.vertex_normal().unwrap_or(self.geometric_normal)
-    }
-
-    /// `smooth` bent by the normal map (glTF 2.0 §3.9.3 and appendix B.4).
-    #[inline(always)]
-    fn shading_normal(&self, smooth: Vec3) -> Vec3 {
-        let Some(texture) = &self.material.normal_texture else { return smooth };
-        let Some((tangent, bitangent)) = self.tangents(smooth, texture) else { return smooth };
-        let texel = self.read(texture).truncate() * 2.0 - 1.0;
-        let bent = texel * Vec3::new(self.material.normal_scale, self.material.normal_scale, 1.0);
-        (tangent * bent.x + bitangent * bent.y + smooth * bent.z).try_normalize().unwrap_or(smooth)
-    }
-
-    /// Unit tangent and bitangent orthogonal to `smooth`: the directions of the map's red and green.
-    #[inline(always)]
-    fn tangents(&self, smooth: Vec3, texture: &TextureRef) -> Option<(Vec3, Vec3)> {
-        let (along, side) = if self.mesh.tangents.is_empty() {
-            self.edge_tangent(texture)?
-        } else {
-            let [a, b, c] = each(self.corners, |i| self.mesh.tangents[i as usize]);
-            let object = a * self.weights[0] + b * self.weights[1] + c * self.weights[2];
-            let world = self.instance.world_from_object.transform_vector3(object.truncate());
-            (world, self.frame.side * if object.w < 0.0 { -1.0 } else { 1.0 })
-        };
-        let along = along / along.abs().max_element();
-        let tangent = along.reject_from_normalized(smooth).try_normalize()?;
-        Some((tangent, smooth.cross(tangent) * side))
-    }
-
-    /// Direction in which u grows over the triangle, and the sign that `cross(normal, it)` needs to point against v.
-    #[inline(always)]
-    fn edge_tangent(&self, texture: &TextureRef) -> Option<(Vec3, f32)> {
-        let [a, b, c] = mesh_uvs(self.mesh, texture, self.corners);
-        let (d1, d2) = (b - a, c - a);
-        let det = d1.perp_dot(d2);
-        let (e1, e2) = (self.points[1] - self.points[0], self.points[2] - self.points[0]);
-        let along = (e1 * d2.y - e2 * d1.y) * det.signum();
-        // Upright texture coordinates run clockwise where corners run counter-clockwise, since v points down.
-        let side = if det < 0.0 { self.frame.side } else { -self.frame.side };
-        (det != 0.0 && along.is_finite()).then(|| (along.into(), side))
-    }
-
-    #[inline(always)]
-    fn albedo(&self) -> Vec3 {
-        let mut color = base_color(self.material, || {
-            let [a, b, c] = each(self.corners, |i| self.mesh.positions[i as usize]);
-            a + (b - a) * self.weights[1] + (c - a) * self.weights[2]
-        });
-        if let Some(texture) = &self.material.base_color_texture {
-            color *= self.read(texture).truncate();
-        }
-        if !self.mesh.colors.is_empty() {
-            let [a, b, c] = each(self.corners, |i| self.mesh.colors[i as usize].truncate());
-            color *= a * self.weights[0] + b * self.weights[1] + c * self.weights[2];
-        }
-        color
-    }
-
-    #[inline(always)]
-    fn emission(&self) -> Vec3 {
-        match &self.material.emission_texture {
-            Some(texture) if self.material.emission != Vec3::ZERO => {
-                self.material.emission * self.read(texture).truncate()
-            }
-            _ => self.material.emission,
-        }
-    }
-
-    /// The texture's value over the footprint.
-    #[inline(always)]
-    fn read(&self, texture: &TextureRef) -> Vec4 {
-        let uvs =
-            each(mesh_uvs(self.mesh, texture, self.corners), |uv| texture.transform.transform_point2(uv));
-        let read = self.scene.textures[texture.texture as usize];
-        let image = &self.scene.images[read.image as usize];
-        read.sampler.sample(image, weigh(uvs, self.weights), self.relative_width * uv_edge(uvs))
+        let (.., face) = self.last.as_ref().expect("just written");
+        face.point(hit, width)
     }
 }
 
@@ -520,13 +348,6 @@ fn mesh_uvs(mesh: &Mesh, texture: &TextureRef, corners: [u32; 3]) -> [Vec2; 3] {
         Some(uvs) => each(corners, |i| uvs[i as usize]),
         None => [Vec2::ZERO; 3],
     }
-}
-
-/// Root of twice the area of a triangle in a texture: lengths grow from a surface to its texture by the root of what areas
-/// grow by.
-#[inline(always)]
-fn uv_edge([a, b, c]: [Vec2; 3]) -> f32 {
-    (b - a).perp_dot(c - a).abs().sqrt()
 }
 
 #[inline(always)]
@@ -575,7 +396,7 @@ const ROUNDING: f32 = 1e-6;
 mod tests {
     use super::*;
     use crate::{Image, Sampler, Texture, Wrap};
-    use glam::{Affine2, Quat};
+    use glam::{Affine2, Quat, Vec4};
 
     /// One triangle (0,0,0), (1,0,0), (0,1,0) with upright texture coordinates.
     fn mesh() -> Mesh {

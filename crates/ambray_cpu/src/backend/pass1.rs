@@ -17,11 +17,12 @@ use ambray_core::{
     filter::Guide,
     frame::{GBufferPixel, RayCounts},
     gather::{GatherParams, GatherScratch, Gathered, ShadedPoint, gather},
-    sampling::PixelKey,
+    sampling::{CLASS_COUNT, PixelKey, sample_class},
     settings::{Normals, Settings},
     trace::{Hit, Ray, Trace},
     view::View,
 };
+use ambray_scene::surface::SurfaceReader;
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
@@ -165,6 +166,8 @@ pub(super) struct Scratch {
     hits: Vec<Hit>,
     /// Pixels of the tile that see a surface.
     seen: Vec<Place>,
+    /// They before they were ordered.
+    ordered: Vec<Place>,
     receivers: Vec<Receiver>,
     received: Vec<Received>,
     direct: DirectScratch,
@@ -273,6 +276,7 @@ impl Job<'_> {
         world.closest_hits(&scratch.rays, &mut scratch.hits);
 
         scratch.seen.clear();
+        let mut reader = self.world.surfaces().reader();
         for ((row, column), (ray, hit)) in places.zip(scratch.rays.iter().zip(&scratch.hits)) {
             if !hit.is_hit() {
                 segment.see_nothing((row, column), self.view.background);
@@ -280,7 +284,7 @@ impl Job<'_> {
             }
             let pixel = &mut segment.gbuffer[row][column];
             let guide = &mut segment.guides[row][column];
-            (*pixel, *guide) = self.surface(ray, hit);
+            (*pixel, *guide) = self.surface(&mut reader, ray, hit);
             if let Some(sequel) = self.sequel {
                 let then = sequel.then(self.world.surfaces(), self.settings, guide, ray, hit);
                 segment.then[row][column] = then;
@@ -299,10 +303,10 @@ impl Job<'_> {
 
     /// Attributes of the surface that a primary ray hit.
     #[inline(always)]
-    fn surface(&self, ray: &Ray, hit: &Hit) -> (GBufferPixel, Guide) {
+    fn surface(&self, reader: &mut SurfaceReader<'_>, ray: &Ray, hit: &Hit) -> (GBufferPixel, Guide) {
         let camera = &self.view.camera;
         let footprint_there = camera.footprint(camera.depth(ray.origin + hit.t * ray.direction));
-        let point = self.world.surfaces().surface_at(ray, hit, footprint_there).facing(ray.direction);
+        let point = reader.surface_at(ray, hit, footprint_there).facing(ray.direction);
         let depth = camera.depth(point.position);
         let shading_normal = match self.settings.normals {
             Normals::Shading => point.shading_normal,
@@ -368,8 +372,7 @@ impl Job<'_> {
     ) {
         let origin = (segment.x0, segment.y0);
         scratch.points.clear();
-        // Class by class, so that the rays of a run share their directions on flat surfaces.
-        scratch.seen.sort_unstable_by_key(|&place| (self.key(origin, place).class, place));
+        scratch.order_by_class(origin);
         let point = |&place: &Place| segment.gbuffer[place.0][place.1].shaded_point(self.key(origin, place));
         scratch.points.extend(scratch.seen.iter().map(point));
         scratch.gathered.resize(scratch.points.len(), Gathered::default());
@@ -388,6 +391,25 @@ impl Job<'_> {
             counts.chord += u64::from(gathered.chord_rays);
             counts.shadow += u64::from(gathered.shadow_rays);
         }
+    }
+}
+
+impl Scratch {
+    /// Orders the pixels that see a surface class by class, so that the rays of a run share their directions on flat
+    /// surfaces. The first pixel of the segment is at (`x0`, `y0`).
+    fn order_by_class(&mut self, (x0, y0): (usize, usize)) {
+        let class = |(row, column): Place| usize::from(sample_class((x0 + column) as u32, (y0 + row) as u32));
+        // Where each class begins.
+        let mut places = [0; CLASS_COUNT as usize + 1];
+        self.seen.iter().for_each(|&place| places[class(place) + 1] += 1);
+        (0..CLASS_COUNT as usize).for_each(|k| places[k + 1] += places[k]);
+        self.ordered.resize(self.seen.len(), (0, 0));
+        for &place in &self.seen {
+            let at = &mut places[class(place)];
+            self.ordered[*at] = place;
+            *at += 1;
+        }
+        std::mem::swap(&mut self.seen, &mut self.ordered);
     }
 }
 

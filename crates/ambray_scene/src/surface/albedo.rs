@@ -6,7 +6,11 @@ use ambray_core::trace::{Hit, Ray};
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
-use super::{Placed, Surfaces, mesh_uvs, uv_edge, weigh};
+use super::{
+    Surfaces,
+    at::{Mapping, Placed},
+    weigh,
+};
 use crate::{Instance, Material, MaterialKind, Mesh, Motion, Scene, texture::PreparedTexture};
 
 /// Placed triangles whose [`Edges`] are kept, at most: 64 MB.
@@ -28,16 +32,6 @@ enum Paint {
     Textured { base: Vec3, texture: Arc<PreparedTexture>, mapping: Arc<[Mapping]>, edges: Edges },
     /// All that [`Surfaces::diffuse_at`] computes: checkers, vertex colours, what moves.
     ByPoint,
-}
-
-/// The texture coordinates of a triangle.
-#[derive(Clone, Copy, Debug)]
-#[repr(align(32))]
-struct Mapping {
-    /// At the corners, those of the texture.
-    uvs: [Vec2; 3],
-    /// Root of twice its area in the texture.
-    edge: f32,
 }
 
 /// Root of twice the area of each placed triangle, world space; infinite where it has none.
@@ -106,21 +100,43 @@ impl Surfaces {
     #[inline(always)]
     pub fn albedos_at(&self, rays: &[Ray], hits: &[Hit], cone: f32, albedos: &mut [Vec3]) {
         assert!(rays.len() == hits.len() && hits.len() == albedos.len(), "one albedo for each hit");
-        for ((ray, hit), albedo) in rays.iter().zip(hits).zip(albedos) {
-            *albedo = match self.albedos.paints.get(hit.instance as usize) {
-                None => Vec3::ZERO,
-                Some(Paint::Uniform(albedo)) => *albedo,
-                Some(Paint::Textured { base, texture, mapping, edges }) => {
-                    let (mapping, edge) = (&mapping[hit.triangle as usize], edges[hit.triangle as usize]);
-                    let uv = weigh(mapping.uvs, [1.0 - hit.u - hit.v, hit.u, hit.v]);
-                    let width = hit.t * cone / edge * mapping.edge;
-                    base * texture.sample(uv, width).truncate()
-                }
-                Some(Paint::ByPoint) => self.diffuse_at(ray, hit, hit.t * cone).albedo,
-            };
+        let mut lookups: Vec<Lookup<'_>> = Vec::with_capacity(BLOCK);
+        let blocks = rays.chunks(BLOCK).zip(hits.chunks(BLOCK)).zip(albedos.chunks_mut(BLOCK));
+        for ((rays, hits), albedos) in blocks {
+            // Triangles first, then texels: so many are on their way from memory at once.
+            lookups.clear();
+            for (i, hit) in hits.iter().enumerate() {
+                albedos[i] = match self.albedos.paints.get(hit.instance as usize) {
+                    None => Vec3::ZERO,
+                    Some(Paint::Uniform(albedo)) => *albedo,
+                    Some(Paint::Textured { base, texture, mapping, edges }) => {
+                        let triangle = hit.triangle as usize;
+                        let (mapping, edge) = (&mapping[triangle], edges[triangle]);
+                        let uv = weigh(mapping.uvs, [1.0 - hit.u - hit.v, hit.u, hit.v]);
+                        let width = hit.t * cone / edge * mapping.edge;
+                        lookups.push(Lookup { i, uv, width, texture });
+                        *base
+                    }
+                    Some(Paint::ByPoint) => self.diffuse_at(&rays[i], hit, hit.t * cone).albedo,
+                };
+            }
+            for &Lookup { i, uv, width, texture } in &lookups {
+                albedos[i] *= texture.sample(uv, width).truncate();
+            }
         }
     }
 }
+
+/// A look into a texture, for hit `i` of a block.
+struct Lookup<'a> {
+    i: usize,
+    uv: Vec2,
+    width: f32,
+    texture: &'a PreparedTexture,
+}
+
+/// Hits that are worked on at once.
+const BLOCK: usize = 64;
 
 /// The paint of a material where no texture is read.
 fn plain(material: &Material) -> Paint {
@@ -134,13 +150,7 @@ fn plain(material: &Material) -> Paint {
 /// Where the triangles of `mesh` are in the base colour texture of `material`, which has one.
 fn mapping(mesh: &Mesh, material: &Material) -> Arc<[Mapping]> {
     let texture = material.base_color_texture.as_ref().expect("only meshes that read one are mapped");
-    let triangles = mesh.triangles.iter();
-    triangles
-        .map(|&corners| {
-            let uvs = mesh_uvs(mesh, texture, corners).map(|uv| texture.transform.transform_point2(uv));
-            Mapping { uvs, edge: uv_edge(uvs) }
-        })
-        .collect()
+    mesh.triangles.iter().map(|&corners| Mapping::new(mesh, texture, corners)).collect()
 }
 
 /// Root of twice the area of a triangle of `instance`, infinite if it has none.
