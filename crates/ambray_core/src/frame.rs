@@ -175,6 +175,8 @@ pub struct StageTimes {
     pub filter: Duration,
     /// Tracing rays, of whatever type: part of the stages above. Zero on a device, whose passes cannot tell it apart.
     pub tracing: Duration,
+    /// For how long a thread had nothing to do while others worked, mean over the threads. Zero on a device.
+    pub idle: Duration,
     /// Bending the vertices of what deforms to the pose of the frame.
     pub deformation: Duration,
     /// Refitting or rebuilding the bottom-level structures of what deforms.

@@ -40,8 +40,8 @@ use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 pub(crate) use pass1::TILE;
 pub use world::CpuWorld;
 
-use pass1::Scratches;
 use planes::Planes;
+use stages::Stage;
 use temporal::{History, Sequel};
 
 use crate::BuildOptions;
@@ -73,10 +73,8 @@ pub struct CpuBackend {
     rendered: AtomicBool,
     /// What the last frame left for the next one, where light is accumulated.
     history: Mutex<Option<History>>,
-    /// Planes for the next frame.
+    /// Memory for the next frame.
     planes: Mutex<Planes>,
-    /// Buffers for its tasks.
-    scratches: Scratches,
     /// The threads of the last call, kept for the next one.
     pool: Mutex<Option<(usize, Arc<ThreadPool>)>>,
 }
@@ -92,7 +90,6 @@ impl CpuBackend {
             rendered: AtomicBool::new(false),
             history: Mutex::default(),
             planes: Mutex::default(),
-            scratches: Scratches::default(),
             pool: Mutex::default(),
         }
     }
@@ -125,16 +122,7 @@ impl CpuBackend {
             let (sequel, isa) = (accumulation.as_ref(), self.world.isa());
             // Taken out, so that frames that are rendered at once do not wait for each other.
             let mut planes = std::mem::take(&mut *self.planes());
-            let mut pass1 = pass1::run(
-                &self.world,
-                settings,
-                view,
-                &params,
-                sequel,
-                &mut planes,
-                &self.scratches,
-                control,
-            )?;
+            let mut pass1 = pass1::run(&self.world, settings, view, &params, sequel, &mut planes, control)?;
             let mut times = pass1.clock.shares(pass1.elapsed);
             let pass2 = if settings.method.is_screen_space() {
                 let rival = rival::run(&self.world, settings, view, &params, &mut pass1, control)?;
@@ -147,6 +135,9 @@ impl CpuBackend {
             };
             let (width, height) = view.camera.size();
             times.filter += pass2.elapsed;
+            let stages = [Stage::Primary, Stage::Direct, Stage::Ambient, Stage::Filter];
+            let threads = pool.current_num_threads();
+            times.idle = pass1.clock.idle(&stages, pass1.elapsed + pass2.elapsed, threads);
             times.total = start.elapsed();
             if sequel.is_some() {
                 *self.history() = Some(History::new(settings, view, pass1.guides, pass2.means));
@@ -167,7 +158,7 @@ impl CpuBackend {
                 bent: pass2.bent,
                 history: pass2.history,
                 view: view.clone(),
-                stats: FrameStats { rays: pass1.rays, times, threads: pool.current_num_threads() },
+                stats: FrameStats { rays: pass1.rays, times, threads },
             })
         })
     }

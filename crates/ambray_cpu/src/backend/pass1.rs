@@ -183,7 +183,6 @@ pub(super) fn run(
     params: &GatherParams<'_>,
     sequel: Option<&Sequel<'_>>,
     planes: &mut Planes,
-    scratches: &Scratches,
     control: Control<'_>,
 ) -> Result<Pass1, Cancelled> {
     let start = Instant::now();
@@ -203,7 +202,7 @@ pub(super) fn run(
     };
     let (width, clock) = (width as usize, Clock::default());
     let job = Job { world, settings, view, params, sequel, clock: &clock };
-    let segments = Segment::all(&mut pass, width);
+    let (segments, scratches) = (Segment::all(&mut pass, width), &planes.scratches);
     let (count, done, in_a_row) = (segments.len(), AtomicUsize::new(0), width.div_ceil(SEGMENT));
     let counts = segments.into_par_iter().with_max_len(1).map(|mut segment| {
         let (mut counts, mut scratch) = (RayCounts::default(), scratches.take());

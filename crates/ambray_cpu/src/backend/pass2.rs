@@ -16,6 +16,7 @@ use rayon::prelude::*;
 use super::{
     pass1::Pass1,
     planes::Planes,
+    stages::Stage,
     temporal::Sequel,
     vectors::{self, Work},
 };
@@ -66,8 +67,9 @@ pub(super) fn run(
         Rows::default,
         |rows, (i, ((beauty, ambient), ((bent, history), means)))| {
             control.check()?;
-            let first = i * ROWS;
+            let (first, start) = (i * ROWS, Instant::now());
             vectors::run(isa, Band { job: &job, rows, first, beauty, ambient, bent, history, means });
+            pass1.clock.book(Stage::Filter, start);
             Ok(())
         },
     )?;

@@ -8,7 +8,9 @@ use ambray_core::{
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
-/// Planes that nobody needs any more.
+use super::pass1::Scratches;
+
+/// Planes that nobody needs any more, and other memory that frames take.
 #[derive(Debug, Default)]
 pub(super) struct Planes {
     gbuffer: Shelf<GBufferPixel>,
@@ -16,6 +18,8 @@ pub(super) struct Planes {
     fours: Shelf<Vec4>,
     threes: Shelf<Vec3>,
     ones: Shelf<f32>,
+    /// Buffers of the tasks of pass 1.
+    pub(super) scratches: Scratches,
 }
 
 /// Planes of one kind, all of one size.

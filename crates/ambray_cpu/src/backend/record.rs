@@ -42,17 +42,7 @@ impl CpuBackend {
             let samples = SampleSets::of(&settings);
             let params = GatherParams::new(&settings, view, &samples);
             let planes = &mut Planes::default();
-            let seen = pass1::run(
-                &self.world,
-                &settings,
-                view,
-                &params,
-                None,
-                planes,
-                &pass1::Scratches::default(),
-                control,
-            )?
-            .gbuffer;
+            let seen = pass1::run(&self.world, &settings, view, &params, None, planes, control)?.gbuffer;
             let batch = |kind, per_pixel: u32, rays: Vec<(Ray, u32)>| {
                 let (rays, tags) = rays.into_iter().unzip();
                 RayBatch { kind, width, height, per_pixel: per_pixel.max(1), rays, tags }

@@ -13,13 +13,23 @@ impl Sampler {
     #[inline(always)]
     #[must_use]
     pub fn sample(&self, image: &Image, uv: Vec2, width: f32) -> Vec4 {
+        if image.srgb {
+            self.sample_as::<true>(image, uv, width)
+        } else {
+            self.sample_as::<false>(image, uv, width)
+        }
+    }
+
+    #[inline(always)]
+    fn sample_as<const SRGB: bool>(&self, image: &Image, uv: Vec2, width: f32) -> Vec4 {
         let decode = image.decoder();
         let blend = self.blend(image.levels.len(), width * image.texels_across());
-        let fine = self.read(image, decode, blend.fine, blend.filter, uv);
+        let read = |level: usize| Encoded::<SRGB>::of(&image.levels[level], decode);
+        let fine = self.between_texels(read(blend.fine), blend.filter, uv);
         if blend.share == 0.0 {
             return fine;
         }
-        fine.lerp(self.read(image, decode, blend.coarse, blend.filter, uv), blend.share)
+        fine.lerp(self.between_texels(read(blend.coarse), blend.filter, uv), blend.share)
     }
 
     /// Which levels of `levels` a footprint of `texels` texels of the full image asks for.
@@ -54,11 +64,6 @@ impl Sampler {
             }
         };
         if v.share == 0.0 { row(v.first) } else { lerp(row(v.first), row(v.second), v.share) }
-    }
-
-    #[inline(always)]
-    fn read(&self, image: &Image, decode: &[f32; 256], level: usize, filter: Filter, uv: Vec2) -> Vec4 {
-        self.between_texels(Encoded::of(&image.levels[level], decode), filter, uv)
     }
 
     /// The value of a level.
@@ -101,20 +106,20 @@ pub(super) trait Texels {
 }
 
 /// The texels of a level as the image has them.
-pub(super) struct Encoded<'a> {
+pub(super) struct Encoded<'a, const SRGB: bool> {
     level: &'a ImageLevel,
     /// What the bytes of the colour channels mean.
     decode: &'a [f32; 256],
 }
 
-impl<'a> Encoded<'a> {
+impl<'a, const SRGB: bool> Encoded<'a, SRGB> {
     #[inline(always)]
     pub(super) const fn of(level: &'a ImageLevel, decode: &'a [f32; 256]) -> Self {
         Self { level, decode }
     }
 }
 
-impl Texels for Encoded<'_> {
+impl<const SRGB: bool> Texels for Encoded<'_, SRGB> {
     #[inline(always)]
     fn size(&self) -> (u32, u32) {
         (self.level.width, self.level.height)
@@ -123,8 +128,13 @@ impl Texels for Encoded<'_> {
     #[inline(always)]
     fn texel(&self, i: usize) -> Vec4 {
         let [r, g, b, a] = self.level.texels[i];
-        let decode = |byte: u8| self.decode[usize::from(byte)];
-        Vec4::new(decode(r), decode(g), decode(b), srgb::UNIT[usize::from(a)])
+        if SRGB {
+            let decode = |byte: u8| self.decode[usize::from(byte)];
+            Vec4::new(decode(r), decode(g), decode(b), srgb::UNIT[usize::from(a)])
+        } else {
+            // The bits of `UNIT`, by one division of four.
+            Vec4::new(f32::from(r), f32::from(g), f32::from(b), f32::from(a)) / 255.0
+        }
     }
 }
 

@@ -45,7 +45,7 @@ impl PreparedTexture {
                 return Level { size, start: FINE };
             }
             let start = texels.len() as u32;
-            let encoded = Encoded::of(level, decode);
+            let encoded = Encoded::<true>::of(level, decode);
             texels.extend((0..level.texels.len()).map(|i| encoded.texel(i)));
             Level { size, start }
         };
@@ -77,7 +77,7 @@ impl PreparedTexture {
     /// Seldom needed, so its code is not among the rest.
     #[inline(never)]
     fn read_fine(&self, level: &ImageLevel, filter: Filter, uv: Vec2) -> Vec4 {
-        self.sampler.between_texels(Encoded::of(level, self.image.decoder()), filter, uv)
+        self.sampler.between_texels(Encoded::<true>::of(level, self.image.decoder()), filter, uv)
     }
 }
 
