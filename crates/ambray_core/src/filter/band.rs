@@ -119,22 +119,20 @@ impl Filter {
                     let is_surface = around.depth[lane].is_finite();
                     let accepted = is_centre | (is_surface & is_near & faces_alike);
                     weights[lane] = if accepted { weights[lane] + k } else { weights[lane] };
-                    for plane in 0..PLANES {
-                        for channel in 0..4 {
-                            let sum = &mut sums[plane][channel][lane];
-                            *sum = if accepted { *sum + k * values[plane][channel][lane] } else { *sum };
+                    for (sums, values) in sums.iter_mut().zip(&values) {
+                        for (sum, value) in sums.iter_mut().zip(values) {
+                            sum[lane] = if accepted { sum[lane] + k * value[lane] } else { sum[lane] };
                         }
                     }
                 }
             }
         }
-        for plane in 0..PLANES {
-            for channel in 0..4 {
+        for (plane, sums) in sums.iter_mut().enumerate() {
+            for (channel, sums) in sums.iter_mut().enumerate() {
                 let unchanged = from.plane(row, VALUES + 4 * plane + channel, column);
                 for lane in 0..LANES {
-                    let mean = sums[plane][channel][lane] / weights[lane];
-                    let is_surface = centre.depth[lane].is_finite();
-                    sums[plane][channel][lane] = if is_surface { mean } else { unchanged[lane] };
+                    let mean = sums[lane] / weights[lane];
+                    sums[lane] = if centre.depth[lane].is_finite() { mean } else { unchanged[lane] };
                 }
             }
         }

@@ -1,7 +1,5 @@
 //! From traced rays to openness, near radiance and bent normal (spec §§3, 8).
 
-use std::array::from_fn;
-
 use glam::{DVec3, Vec3};
 
 use super::{
@@ -83,14 +81,30 @@ impl<const L: usize> Sums<L> {
     fn add(&mut self, params: &GatherParams<'_>, samples: &Samples, slot: usize) {
         let distance: &[f32; L] = group(&samples.distance, slot);
         let mu = params.openness.at_each(distance);
-        let mu: [f64; L] = from_fn(|lane| f64::from(mu[lane]));
         // Where radiance is added with other weights, it is the share of the hit that is not open.
-        let near = |lane: usize| distance[lane] < params.near_limit;
-        let weight: [f64; L] = match params.near_radiance {
-            NearRadiance::Off | NearRadiance::PerHit => from_fn(|lane| 1.0 - mu[lane]),
-            NearRadiance::Averaged => from_fn(|lane| if near(lane) { 1.0 - mu[lane] } else { 0.0 }),
-            NearRadiance::AveragedPlain => from_fn(|lane| if near(lane) { 1.0 } else { 0.0 }),
-        };
+        let (mut wide, mut weight) = ([0.0; L], [0.0; L]);
+        for lane in 0..L {
+            wide[lane] = f64::from(mu[lane]);
+            let is_near = distance[lane] < params.near_limit;
+            weight[lane] = match params.near_radiance {
+                NearRadiance::Off | NearRadiance::PerHit => 1.0 - wide[lane],
+                NearRadiance::Averaged => {
+                    if is_near {
+                        1.0 - wide[lane]
+                    } else {
+                        0.0
+                    }
+                }
+                NearRadiance::AveragedPlain => {
+                    if is_near {
+                        1.0
+                    } else {
+                        0.0
+                    }
+                }
+            };
+        }
+        let mu = wide;
         for lane in 0..L {
             self.open[lane] += mu[lane];
             self.weight[lane] += weight[lane];

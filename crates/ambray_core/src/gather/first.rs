@@ -1,7 +1,5 @@
 //! First batch: N rays from each point over the hemisphere.
 
-use std::array::from_fn;
-
 use crate::{
     basis::Basis,
     sampling::{SampleDirection, pcg},
@@ -204,17 +202,15 @@ fn push_group<const L: usize>(at: usize, batch: &mut FirstBatch, t_max: f32, fir
     let count: u32 = above.iter().map(|&distance| u32::from(distance > 0.0)).sum();
     if count as usize == L {
         // All at once, as on every flat surface.
-        rays.extend_from_slice(&from_fn::<_, L, _>(ray));
-        slots.extend_from_slice(&from_fn::<_, L, _>(|lane| slot + lane as u32));
-        owners.extend_from_slice(&from_fn::<_, L, _>(|lane| owner + lane as u32));
+        rays.extend((0..L).map(ray));
+        slots.extend((0..L as u32).map(|lane| slot + lane));
+        owners.extend((0..L as u32).map(|lane| owner + lane));
         return;
     }
-    for lane in 0..L {
-        if above[lane] > 0.0 {
-            rays.push(ray(lane));
-            slots.push(slot + lane as u32);
-            owners.push(owner + lane as u32);
-        }
+    for (lane, _) in above.iter().enumerate().filter(|&(_, &distance)| distance > 0.0) {
+        rays.push(ray(lane));
+        slots.push(slot + lane as u32);
+        owners.push(owner + lane as u32);
     }
 }
 
@@ -231,26 +227,25 @@ enum Local {
 /// blocked at once, without a ray (spec §5).
 #[inline(always)]
 fn make_group<const L: usize>(at: usize, samples: &mut Samples, starts: &Starts, slot: usize, local: Local) {
-    let [x, y, z] = match local {
-        Local::Shared(local) => local.to_array().map(|x| [x; L]),
-        Local::Own => starts.local.each_ref().map(|plane| *group::<L>(plane, at)),
-    };
-    let direction: [[f32; L]; 3] = from_fn(|axis| {
-        let [tangent, bitangent, normal] = starts.basis.each_ref().map(|of| group::<L>(&of[axis], at));
-        from_fn(|lane| tangent[lane] * x[lane] + bitangent[lane] * y[lane] + normal[lane] * z[lane])
-    });
-    let horizon = starts.horizon.each_ref().map(|plane| group::<L>(plane, at));
-    let distance: [f32; L] = from_fn(|lane| {
-        let height = direction[0][lane] * horizon[0][lane]
-            + direction[1][lane] * horizon[1][lane]
-            + direction[2][lane] * horizon[2][lane];
-        if height > 0.0 { f32::INFINITY } else { 0.0 }
-    });
+    let mut height = [0.0; L];
+    let own = starts.local.each_ref().map(|plane| group::<L>(plane, at));
     for axis in 0..3 {
-        *group_mut(&mut samples.direction[axis], slot + at) = direction[axis];
-        *group_mut(&mut samples.radiance[axis], slot + at) = [0.0; L];
+        let [tangent, bitangent, normal] = starts.basis.each_ref().map(|of| group::<L>(&of[axis], at));
+        let horizon = group::<L>(&starts.horizon[axis], at);
+        let direction = group_mut::<L>(&mut samples.direction[axis], slot + at);
+        for lane in 0..L {
+            let [x, y, z] = match local {
+                Local::Shared(local) => local.to_array(),
+                Local::Own => [own[0][lane], own[1][lane], own[2][lane]],
+            };
+            direction[lane] = tangent[lane] * x + bitangent[lane] * y + normal[lane] * z;
+            height[lane] += direction[lane] * horizon[lane];
+        }
+        group_mut::<L>(&mut samples.radiance[axis], slot + at).fill(0.0);
     }
-    *group_mut(&mut samples.distance, slot + at) = distance;
+    for (distance, height) in group_mut::<L>(&mut samples.distance, slot + at).iter_mut().zip(height) {
+        *distance = if height > 0.0 { f32::INFINITY } else { 0.0 };
+    }
 }
 
 impl Starts {

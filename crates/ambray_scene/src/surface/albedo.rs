@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use ambray_core::trace::{Hit, Ray};
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
 use super::{
@@ -11,7 +11,10 @@ use super::{
     at::{Mapping, Placed},
     weigh,
 };
-use crate::{Instance, Material, MaterialKind, Mesh, Motion, Scene, texture::PreparedTexture};
+use crate::{
+    Instance, Material, MaterialKind, Mesh, Motion, Scene,
+    texture::{Place, PreparedTexture},
+};
 
 /// Placed triangles whose [`Edges`] are kept, at most: 64 MB.
 const EDGES: usize = 16_000_000;
@@ -103,7 +106,7 @@ impl Surfaces {
         let mut lookups: Vec<Lookup<'_>> = Vec::with_capacity(BLOCK);
         let blocks = rays.chunks(BLOCK).zip(hits.chunks(BLOCK)).zip(albedos.chunks_mut(BLOCK));
         for ((rays, hits), albedos) in blocks {
-            // Triangles first, then texels: so many are on their way from memory at once.
+            // Triangles first, then places, then texels: so many are on their way from memory at once.
             lookups.clear();
             for (i, hit) in hits.iter().enumerate() {
                 albedos[i] = match self.albedos.paints.get(hit.instance as usize) {
@@ -114,14 +117,17 @@ impl Surfaces {
                         let (mapping, edge) = (&mapping[triangle], edges[triangle]);
                         let uv = weigh(mapping.uvs, [1.0 - hit.u - hit.v, hit.u, hit.v]);
                         let width = hit.t * cone / edge * mapping.edge;
-                        lookups.push(Lookup { i, uv, width, texture });
+                        lookups.push(Lookup { i, uv, width, texture, place: Place::Value(Vec4::ZERO) });
                         *base
                     }
                     Some(Paint::ByPoint) => self.diffuse_at(&rays[i], hit, hit.t * cone).albedo,
                 };
             }
-            for &Lookup { i, uv, width, texture } in &lookups {
-                albedos[i] *= texture.sample(uv, width).truncate();
+            for lookup in &mut lookups {
+                lookup.place = lookup.texture.locate(lookup.uv, lookup.width);
+            }
+            for Lookup { i, texture, place, .. } in &lookups {
+                albedos[*i] *= texture.value(place).truncate();
             }
         }
     }
@@ -133,6 +139,8 @@ struct Lookup<'a> {
     uv: Vec2,
     width: f32,
     texture: &'a PreparedTexture,
+    /// Found after `uv` and `width`.
+    place: Place,
 }
 
 /// Hits that are worked on at once.

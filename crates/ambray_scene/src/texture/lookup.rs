@@ -24,12 +24,14 @@ impl Sampler {
     fn sample_as<const SRGB: bool>(&self, image: &Image, uv: Vec2, width: f32) -> Vec4 {
         let decode = image.decoder();
         let blend = self.blend(image.levels.len(), width * image.texels_across());
-        let read = |level: usize| Encoded::<SRGB>::of(&image.levels[level], decode);
-        let fine = self.between_texels(read(blend.fine), blend.filter, uv);
+        let (fine, coarse) = (&image.levels[blend.fine], &image.levels[blend.coarse]);
+        let quad = self.quad((fine.width, fine.height), blend.filter, uv);
+        let value = quad.value(Encoded::<SRGB>::of(fine, decode));
         if blend.share == 0.0 {
-            return fine;
+            return value;
         }
-        fine.lerp(self.between_texels(read(blend.coarse), blend.filter, uv), blend.share)
+        let quad = self.quad((coarse.width, coarse.height), blend.filter, uv);
+        value.lerp(quad.value(Encoded::<SRGB>::of(coarse, decode)), blend.share)
     }
 
     /// Which levels of `levels` a footprint of `texels` texels of the full image asks for.
@@ -66,18 +68,14 @@ impl Sampler {
         if v.share == 0.0 { row(v.first) } else { lerp(row(v.first), row(v.second), v.share) }
     }
 
-    /// The value of a level.
+    /// The texels around `uv` of a level of width and height `size`.
     #[inline(always)]
-    pub(super) fn between_texels(&self, level: impl Texels, filter: Filter, uv: Vec2) -> Vec4 {
-        let (width, height) = level.size();
-        let [u, v] = self.taps((width, height), filter, uv);
-        let [first, second] = [v.first, v.second].map(|row| row * width as usize);
-        if filter == Filter::Nearest {
-            return level.texel(first + u.first);
-        }
-        let upper = level.texel(first + u.first).lerp(level.texel(first + u.second), u.share);
-        let lower = level.texel(second + u.first).lerp(level.texel(second + u.second), u.share);
-        upper.lerp(lower, v.share)
+    pub(super) fn quad(&self, size: (u32, u32), filter: Filter, uv: Vec2) -> Quad {
+        let [u, v] = self.taps(size, filter, uv);
+        let width = size.0 as usize;
+        let [upper, lower] = [v.first * width, v.second * width];
+        let texels = [upper + u.first, upper + u.second, lower + u.first, lower + u.second];
+        Quad { texels, shares: [u.share, v.share] }
     }
 
     #[inline(always)]
@@ -97,10 +95,27 @@ pub(super) struct Blend {
     pub(super) filter: Filter,
 }
 
+/// Four texels and how they are weighed; all the same one where nothing is filtered.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Quad {
+    /// Upper and lower, left and right.
+    texels: [usize; 4],
+    /// Of the right ones, and of the lower ones.
+    shares: [f32; 2],
+}
+
+impl Quad {
+    #[inline(always)]
+    pub(super) fn value(&self, level: impl Texels) -> Vec4 {
+        let ([a, b, c, d], [right, below]) = (self.texels, self.shares);
+        let upper = level.texel(a).lerp(level.texel(b), right);
+        let lower = level.texel(c).lerp(level.texel(d), right);
+        upper.lerp(lower, below)
+    }
+}
+
 /// The texels of a level.
 pub(super) trait Texels {
-    /// Width and height.
-    fn size(&self) -> (u32, u32);
     /// Linear RGBA of texel number `i`, row by row from the top.
     fn texel(&self, i: usize) -> Vec4;
 }
@@ -120,11 +135,6 @@ impl<'a, const SRGB: bool> Encoded<'a, SRGB> {
 }
 
 impl<const SRGB: bool> Texels for Encoded<'_, SRGB> {
-    #[inline(always)]
-    fn size(&self) -> (u32, u32) {
-        (self.level.width, self.level.height)
-    }
-
     #[inline(always)]
     fn texel(&self, i: usize) -> Vec4 {
         let [r, g, b, a] = self.level.texels[i];

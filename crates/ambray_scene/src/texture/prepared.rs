@@ -5,8 +5,8 @@ use std::sync::Arc;
 use glam::{Vec2, Vec4};
 
 use super::{
-    Filter, Image, ImageLevel, Sampler,
-    lookup::{Encoded, Texels},
+    Image, ImageLevel, Sampler,
+    lookup::{Blend, Encoded, Quad, Texels},
 };
 
 /// Texels of the largest level that is kept decoded. Bounced light reads footprints of a tenth of the radius and more, which
@@ -53,56 +53,67 @@ impl PreparedTexture {
         Self { image: Arc::clone(image), sampler, texels_across: image.texels_across(), texels, levels }
     }
 
-    /// The bits of [`Sampler::sample`].
+    /// Where to look for the value at `uv` of a footprint of `width` texture units. Apart from looking, so that many looks
+    /// can wait for memory at once.
     #[inline(always)]
-    pub(crate) fn sample(&self, uv: Vec2, width: f32) -> Vec4 {
-        let blend = self.sampler.blend(self.levels.len(), width * self.texels_across);
-        let fine = self.read(blend.fine, blend.filter, uv);
-        if blend.share == 0.0 {
-            return fine;
+    pub(crate) fn locate(&self, uv: Vec2, width: f32) -> Place {
+        let Blend { fine, coarse, share, filter } =
+            self.sampler.blend(self.levels.len(), width * self.texels_across);
+        let (fine, coarse) = (self.levels[fine], self.levels[coarse]);
+        // The fine one is the larger of the two.
+        if fine.start == FINE {
+            return Place::Value(self.read_fine(uv, width));
         }
-        fine.lerp(self.read(blend.coarse, blend.filter, uv), blend.share)
+        let first = (fine.start, self.sampler.quad(fine.size, filter, uv));
+        if share == 0.0 {
+            return Place::One(first);
+        }
+        Place::Two(first, (coarse.start, self.sampler.quad(coarse.size, filter, uv)), share)
     }
 
+    /// The bits of [`Sampler::sample`] at a place of [`locate`](Self::locate).
     #[inline(always)]
-    fn read(&self, level: usize, filter: Filter, uv: Vec2) -> Vec4 {
-        let Level { size, start } = self.levels[level];
-        if start == FINE {
-            return self.read_fine(&self.image.levels[level], filter, uv);
+    pub(crate) fn value(&self, place: &Place) -> Vec4 {
+        let read = |(start, quad): &(u32, Quad)| quad.value(Decoded(&self.texels[*start as usize..]));
+        match place {
+            Place::Two(fine, coarse, share) => read(fine).lerp(read(coarse), *share),
+            Place::One(level) => read(level),
+            Place::Value(value) => *value,
         }
-        let decoded = Decoded { size, texels: &self.texels[start as usize..] };
-        self.sampler.between_texels(decoded, filter, uv)
     }
 
     /// Seldom needed, so its code is not among the rest.
     #[inline(never)]
-    fn read_fine(&self, level: &ImageLevel, filter: Filter, uv: Vec2) -> Vec4 {
-        self.sampler.between_texels(Encoded::<true>::of(level, self.image.decoder()), filter, uv)
+    fn read_fine(&self, uv: Vec2, width: f32) -> Vec4 {
+        self.sampler.sample(&self.image, uv, width)
     }
+}
+
+/// A place in a [`PreparedTexture`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Place {
+    /// Between two levels, the share of the second.
+    Two((u32, Quad), (u32, Quad), f32),
+    /// In one level.
+    One((u32, Quad)),
+    /// In levels that are not decoded: the value itself.
+    Value(Vec4),
 }
 
 /// Decoded texels of a level, and of those after it.
-struct Decoded<'a> {
-    size: (u32, u32),
-    texels: &'a [Vec4],
-}
+struct Decoded<'a>(&'a [Vec4]);
 
 impl Texels for Decoded<'_> {
     #[inline(always)]
-    fn size(&self) -> (u32, u32) {
-        self.size
-    }
-
-    #[inline(always)]
     fn texel(&self, i: usize) -> Vec4 {
-        self.texels[i]
+        self.0[i]
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Wrap;
+    use crate::{Filter, Wrap};
 
     #[test]
     fn prepared_textures_read_the_same_bits() {
@@ -123,7 +134,8 @@ mod tests {
                 for i in 0..2000 {
                     let uv = Vec2::new(i as f32 * 0.0173 - 9.0, i as f32 * -0.0091 + 3.0);
                     let width = libm::exp2f((i % 23) as f32 * 0.5 - 10.0);
-                    assert_eq!(prepared.sample(uv, width), sampler.sample(&image, uv, width));
+                    let value = prepared.value(&prepared.locate(uv, width));
+                    assert_eq!(value, sampler.sample(&image, uv, width));
                 }
             }
         }
