@@ -12,6 +12,7 @@ mod planes;
 mod points;
 mod record;
 mod rival;
+mod segment;
 mod stages;
 mod temporal;
 mod vectors;
@@ -37,7 +38,7 @@ use ambray_core::{
 use ambray_scene::{Scene, surface::Surfaces};
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 
-pub(crate) use pass1::TILE;
+pub(crate) use segment::TILE;
 pub use world::CpuWorld;
 
 use planes::Planes;
