@@ -125,6 +125,7 @@ impl<const W: usize> Levels<W> {
     pub(crate) fn view<'a>(&'a self, alpha: &'a dyn AlphaTest, packets: bool) -> kernel::Scene<'a, W> {
         kernel::Scene {
             baked: &self.baked,
+            entry: None,
             placed: &self.placed,
             meshes: &self.meshes,
             direct: &self.direct,

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::binary::{Aabb, Binary};
 use super::collapse::{self, Costs};
-use super::layout::{Blas, Block, Bounds, Child, Placed, Tlas};
+use super::layout::{Blas, Block, Bounds, Child, FAT, Placed, Tlas};
 use super::{ploc, reinsert};
 use crate::Quality;
 
@@ -106,12 +106,8 @@ pub(crate) fn deforming<const W: usize>(mesh: &Mesh, masked: bool, quality: Qual
 }
 
 /// Collapses `tree` over some triangles, which `block` puts into leaf blocks.
-fn wide<const W: usize>(
-    tree: &Binary,
-    triangles: usize,
-    block: impl Fn(&[u32]) -> Block<W> + Sync,
-) -> Blas<W> {
-    let wide = collapse::collapse::<W>(tree, Costs::TRIANGLES, W as u32);
+fn wide<const W: usize>(tree: &Binary, triangles: usize, block: impl Fn(&[u32]) -> Block + Sync) -> Blas<W> {
+    let wide = collapse::collapse::<W>(tree, Costs::TRIANGLES, FAT as u32);
     let blocks = wide
         .leaves
         .par_iter()
@@ -127,7 +123,7 @@ fn wide<const W: usize>(
     }
 }
 
-fn block<const W: usize>(triangles: &[Triangle], primitives: &[u32]) -> Block<W> {
+fn block(triangles: &[Triangle], primitives: &[u32]) -> Block {
     let mut block = Block::EMPTY;
     for (lane, &primitive) in primitives.iter().enumerate() {
         let triangle = &triangles[primitive as usize];

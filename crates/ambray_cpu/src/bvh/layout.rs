@@ -59,28 +59,31 @@ impl Child {
     }
 }
 
-/// Leaf: up to `W` triangles as structure of arrays.
+/// Triangles that a leaf may have. Most have six: twice as many lanes would mostly be empty, and cost time and memory.
+pub(crate) const FAT: usize = 8;
+
+/// Leaf: up to [`FAT`] triangles as structure of arrays.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
-pub(crate) struct Block<const W: usize> {
+pub(crate) struct Block {
     /// `corners[vertex][axis][lane]`. Lanes that are empty, or of triangles that cannot be hit in this pose, hold NaN, which
     /// fails every comparison.
-    pub(crate) corners: [[[f32; W]; 3]; 3],
+    pub(crate) corners: [[[f32; FAT]; 3]; 3],
     /// Instances of the triangles; unused in trees of meshes that are placed.
-    pub(crate) instances: [u32; W],
+    pub(crate) instances: [u32; FAT],
     /// Indices of the triangles in their meshes.
-    pub(crate) triangles: [u32; W],
+    pub(crate) triangles: [u32; FAT],
     /// Lanes whose candidates the alpha test decides.
     pub(crate) masked: u32,
     /// Filled lanes; they come first.
     pub(crate) count: u32,
 }
 
-impl<const W: usize> Block<W> {
+impl Block {
     pub(crate) const EMPTY: Self = Self {
-        corners: [[[f32::NAN; W]; 3]; 3],
-        instances: [u32::MAX; W],
-        triangles: [u32::MAX; W],
+        corners: [[[f32::NAN; FAT]; 3]; 3],
+        instances: [u32::MAX; FAT],
+        triangles: [u32::MAX; FAT],
         masked: 0,
         count: 0,
     };
@@ -90,7 +93,7 @@ impl<const W: usize> Block<W> {
 #[derive(Debug, Default)]
 pub(crate) struct Blas<const W: usize> {
     pub(crate) nodes: Vec<Node<W>>,
-    pub(crate) blocks: Vec<Block<W>>,
+    pub(crate) blocks: Vec<Block>,
     /// Smallest box around the triangles.
     pub(crate) bounds: Bounds,
     /// In the leaf blocks.

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use super::build::{LARGEST, cross_margin, is_hittable};
 use super::collapse::Costs;
-use super::layout::{Blas, Block, Bounds, Child, Node};
+use super::layout::{Blas, Block, Bounds, Child, FAT, Node};
 
 /// Most leaf blocks that a thread fits at a time. Trees are split by size alone, so costs are summed in the same order
 /// whatever the number of threads.
@@ -43,7 +43,7 @@ pub(crate) fn refit<const W: usize>(tree: &mut Blas<W>, mesh: &Mesh) -> f64 {
 /// A small subtree.
 struct Part<'a, const W: usize> {
     nodes: &'a mut [Node<W>],
-    blocks: &'a mut [Block<W>],
+    blocks: &'a mut [Block],
     /// Index of the first of `blocks` in the tree.
     first_block: usize,
 }
@@ -76,7 +76,7 @@ impl<const W: usize> Part<'_, W> {
 /// Cuts the largest subtrees of no more than [`GRAIN`] blocks out of a tree.
 fn split<'a, const W: usize>(
     mut nodes: &'a mut [Node<W>],
-    mut blocks: &'a mut [Block<W>],
+    mut blocks: &'a mut [Block],
 ) -> (Vec<Part<'a, W>>, Vec<Step>) {
     let (sizes, total) = (sizes(nodes), nodes.len());
     let (mut parts, mut order) = (Vec::new(), Vec::new());
@@ -160,9 +160,9 @@ fn close<const W: usize>(
 ///
 /// Waiting for memory is most of it, so everything is fetched that can be before anything is done with it: first what the
 /// triangles are, then where their vertices are. The rest looks at several lanes at once.
-fn fit_block<const W: usize>(block: &mut Block<W>, mesh: &Mesh) -> Fitted {
-    let count = (block.count as usize).min(W);
-    let mut indices = [[0; 3]; W];
+fn fit_block(block: &mut Block, mesh: &Mesh) -> Fitted {
+    let count = (block.count as usize).min(FAT);
+    let mut indices = [[0; 3]; FAT];
     for (indices, &triangle) in indices.iter_mut().zip(&block.triangles[..count]) {
         *indices = mesh.triangles[triangle as usize];
     }
@@ -186,8 +186,8 @@ fn fit_block<const W: usize>(block: &mut Block<W>, mesh: &Mesh) -> Fitted {
 }
 
 /// Lanes whose triangles may be such that no ray can hit them, in ascending order; the others can be hit.
-fn doubtful<const W: usize>([a, b, c]: &[[[f32; W]; 3]; 3]) -> impl Iterator<Item = usize> + use<W> {
-    let mut certain = [false; W];
+fn doubtful([a, b, c]: &[[[f32; FAT]; 3]; 3]) -> impl Iterator<Item = usize> + use<> {
+    let mut certain = [false; FAT];
     for (lane, certain) in certain.iter_mut().enumerate() {
         // Plain loops over lanes, which compilers make vectors of.
         let mut reach = 0.0;
@@ -200,11 +200,11 @@ fn doubtful<const W: usize>([a, b, c]: &[[[f32; W]; 3]; 3]) -> impl Iterator<Ite
         let much = (margin(1, 2) > 0.0) | (margin(2, 0) > 0.0) | (margin(0, 1) > 0.0);
         *certain = (reach <= LARGEST) & much;
     }
-    (0..W).filter(move |&lane| !certain[lane])
+    (0..FAT).filter(move |&lane| !certain[lane])
 }
 
 /// Box of all corners; lanes that are not a number do not count.
-fn bounds<const W: usize>(corners: &[[[f32; W]; 3]; 3]) -> Bounds {
+fn bounds(corners: &[[[f32; FAT]; 3]; 3]) -> Bounds {
     let mut bounds = Bounds::EMPTY;
     for axis in 0..3 {
         let (mut lo, mut hi) = ([f32::INFINITY; 4], [f32::NEG_INFINITY; 4]);

@@ -1,8 +1,10 @@
 //! From rays in the order of the caller to packets of rays that agree in direction.
 
-use ambray_core::trace::Ray;
+use ambray_core::trace::{Hit, Ray};
 
-use super::lanes::Lanes;
+use super::Query;
+use super::best::Best;
+use super::lanes::Rays;
 use super::ray::{self, Prepared};
 
 /// Rays of a packet.
@@ -11,16 +13,19 @@ pub(crate) const LANES: usize = 16;
 /// Neighbours in the batch whose directions have a smaller dot product belong to different runs.
 const SAME_RUN: f32 = 0.7;
 
+/// Fills up bundles.
+const NOTHING: Ray = Ray { origin: glam::Vec3::ZERO, t_max: 0.0, direction: glam::Vec3::ZERO, seed: 0 };
+
 /// Sixteen numbers, one a ray.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 pub(crate) struct Numbers(pub(crate) [f32; LANES]);
 
 impl Numbers {
-    const ZERO: Self = Self([0.0; LANES]);
+    pub(crate) const ZERO: Self = Self([0.0; LANES]);
 
     #[inline(always)]
-    pub(crate) fn load<R: Lanes<16>>(&self) -> R {
+    pub(crate) fn load<R: Rays>(&self) -> R {
         R::load(&self.0)
     }
 }
@@ -44,7 +49,28 @@ impl Bundle {
     /// The caller delivers runs of parallel rays, of no fixed length. A bundle ends with a run if it can do so in its second
     /// half, so that the next run is not torn.
     #[inline(always)]
-    pub(crate) fn next<R: Lanes<16>>(rays: &[Ray]) -> (Self, usize) {
+    pub(crate) fn next<R: Rays>(rays: &[Ray]) -> (Self, usize) {
+        let mut bundle = Self::of::<R>(&rays[..rays.len().min(LANES)]);
+        if rays.len() <= LANES || bundle.group(bundle.able | 1) == u32::from(u16::MAX) {
+            return (bundle, rays.len().min(LANES));
+        }
+        let mut turns = 0_u32;
+        let mut last = rays.first().map_or(glam::Vec3::ZERO, |ray| ray.direction);
+        for (lane, ray) in rays.iter().take(LANES + 1).enumerate() {
+            turns |= u32::from(last.dot(ray.direction) < SAME_RUN) << lane;
+            last = ray.direction;
+        }
+        let count = match turns >> (LANES / 2) {
+            0 => rays.len().min(LANES),
+            late => LANES / 2 + late.ilog2() as usize,
+        };
+        bundle.able &= (1 << count) - 1;
+        (bundle, count)
+    }
+
+    /// All of `rays`, no more than sixteen.
+    #[inline(always)]
+    pub(crate) fn of<R: Rays>(rays: &[Ray]) -> Self {
         let mut bundle = Self {
             origin: [Numbers::ZERO; 3],
             direction: [Numbers::ZERO; 3],
@@ -53,29 +79,21 @@ impl Bundle {
             down: [0; 3],
             longest: [0; 2],
         };
-        let mut turns = 0_u32;
-        let mut last = rays.first().map_or(glam::Vec3::ZERO, |ray| ray.direction);
-        for (lane, ray) in rays.iter().take(LANES).enumerate() {
-            for axis in 0..3 {
-                bundle.origin[axis].0[lane] = ray.origin[axis];
-                bundle.direction[axis].0[lane] = ray.direction[axis];
-            }
-            bundle.t_max.0[lane] = ray.t_max;
-            turns |= u32::from(last.dot(ray.direction) < SAME_RUN) << lane;
-            last = ray.direction;
-        }
-        turns |= u32::from(rays.get(LANES).is_some_and(|ray| last.dot(ray.direction) < SAME_RUN)) << LANES;
-        let count = match turns >> (LANES / 2) {
-            0 => rays.len().min(LANES),
-            late => LANES / 2 + late.ilog2() as usize,
-        };
+        let mut some = [NOTHING; LANES];
+        let [ox, oy, oz, t_max, dx, dy, dz, _] = R::transposed(rays.first_chunk().unwrap_or_else(|| {
+            some[..rays.len()].copy_from_slice(rays);
+            &some
+        }));
+        bundle.origin = [Numbers(ox.to_array()), Numbers(oy.to_array()), Numbers(oz.to_array())];
+        bundle.direction = [Numbers(dx.to_array()), Numbers(dy.to_array()), Numbers(dz.to_array())];
+        bundle.t_max = Numbers(t_max.to_array());
         bundle.classify::<R>();
-        bundle.able &= (1 << count) - 1;
-        (bundle, count)
+        bundle.able &= ((1_u64 << rays.len()) - 1) as u32;
+        bundle
     }
 
     #[inline(always)]
-    fn classify<R: Lanes<16>>(&mut self) {
+    fn classify<R: Rays>(&mut self) {
         let zero = R::splat(0.0);
         let (largest, smallest) = (R::splat(f32::MAX), R::splat(f32::MIN));
         let mut able = zero.lt(self.t_max.load());
@@ -85,13 +103,12 @@ impl Bundle {
             let direction: R = self.direction[axis].load();
             able &= origin.le(largest) & smallest.le(origin) & direction.le(largest) & smallest.le(direction);
             directed |= direction.lt(zero) | zero.lt(direction);
-            *down = R::splat(1.0).div(direction).lt(zero);
+            *down = direction.signs();
         }
         self.able = able & directed;
-        let [x, y, z] = [0, 1, 2].map(|axis| {
-            let direction: R = self.direction[axis].load();
-            direction.max(zero.sub(direction))
-        });
+        let (x, y, z): (R, R, R) =
+            (self.direction[0].load(), self.direction[1].load(), self.direction[2].load());
+        let (x, y, z) = (x.max(zero.sub(x)), y.max(zero.sub(y)), z.max(zero.sub(z)));
         let along_x = y.le(x) & z.le(x);
         self.longest = [along_x, z.le(y) & !along_x];
     }
@@ -109,7 +126,7 @@ impl Bundle {
 
     /// The packet of the rays of `group`.
     #[inline(always)]
-    pub(crate) fn packet<R: Lanes<16>>(&self, group: u32) -> Packet {
+    pub(crate) fn packet<R: Rays>(&self, group: u32) -> Packet {
         let first = group.trailing_zeros();
         let is = |lanes: u32| lanes >> first & 1 != 0;
         let longest = if is(self.longest[0]) {
@@ -131,22 +148,46 @@ impl Bundle {
             axes,
             near,
             far,
+            largest_limit: 0.0,
+            hits: 0,
         };
+        packet.largest_limit = packet.limit.load::<R>().largest();
+        // Interleaved rays are parallel on flat surfaces.
+        let mut same = group;
+        for axis in 0..3 {
+            let direction: R = self.direction[axis].load();
+            let of_first = R::splat(self.direction[axis].0[first as usize % LANES]);
+            same &= direction.le(of_first) & of_first.le(direction);
+        }
+        let is_parallel = same == group;
         let one = R::splat(1.0);
         let longest = ray::LARGEST_RECIPROCAL;
         for axis in 0..3 {
             let lane = first as usize % LANES;
             let origin = R::select(group, self.origin[axis].load(), R::splat(self.origin[axis].0[lane]));
             packet.origin[axis] = Numbers(origin.to_array());
-            packet.origins[axis] = [origin.smallest(), origin.largest()];
+            let (low, high) = (origin.smallest(), origin.largest());
+            let is_down = near[axis] >= 3;
+            packet.origins[axis] = if is_down { [low, high] } else { [high, low] };
             let direction =
                 R::select(group, self.direction[axis].load(), R::splat(self.direction[axis].0[lane]));
             let reciprocal = one.div(direction).min(R::splat(longest)).max(R::splat(-longest));
             packet.reciprocal[axis] = Numbers(reciprocal.to_array());
-            packet.reciprocals[axis] = [reciprocal.smallest(), reciprocal.largest()];
+            let (low, high) = if is_parallel {
+                let any = packet.reciprocal[axis].0[0];
+                (any, any)
+            } else {
+                (reciprocal.smallest(), reciprocal.largest())
+            };
+            packet.reciprocals[axis] = if is_down { [high, low] } else { [low, high] };
         }
-        let [x, y, z] = axes.map(|axis| self.direction[axis].load::<R>());
-        packet.shear = [x.div(z), y.div(z), one.div(z)].map(|shear| Numbers(shear.to_array()));
+        let [x, y, z] = axes;
+        let (x, y): (R, R) = (self.direction[x].load(), self.direction[y].load());
+        let z: R = self.direction[z].load();
+        packet.shear[0] = Numbers(x.div(z).to_array());
+        packet.shear[1] = Numbers(y.div(z).to_array());
+        // Of the longest axis, so it is not cut off.
+        packet.shear[2] = packet.reciprocal[axes[2]];
         packet
     }
 }
@@ -158,9 +199,15 @@ pub(crate) struct Packet {
     pub(crate) shear: [Numbers; 3],
     /// t of the best hits so far, or ends of the rays; negative for rays that are answered or absent.
     pub(crate) limit: Numbers,
-    /// Smallest and largest of the rays.
+    /// For each axis the origins that are farthest and least far along the rays.
     pub(crate) origins: [[f32; 2]; 3],
+    /// For each axis the reciprocals of the smallest and the largest absolute value.
     pub(crate) reciprocals: [[f32; 2]; 3],
+    /// Largest of the limits at the start.
+    pub(crate) largest_limit: f32,
+    /// How many hits have shortened rays, modulo 2¹⁶. A box is tested too often or, since the walk keeps fewer boxes than that,
+    /// never not at all for it.
+    pub(crate) hits: u16,
     /// As in [`Prepared`].
     pub(crate) axes: [usize; 3],
     pub(crate) near: [usize; 3],
@@ -168,6 +215,21 @@ pub(crate) struct Packet {
 }
 
 impl Packet {
+    /// The `lanes` have hits at `t`.
+    #[inline(always)]
+    pub(crate) fn shorten<R: Rays>(&mut self, lanes: u32, t: R) {
+        t.put(lanes, &mut self.limit.0);
+        self.hits = self.hits.wrapping_add(1);
+    }
+
+    /// A ray that went alone comes back with `hit`.
+    #[inline(always)]
+    pub(crate) fn settle<Q: Query>(&mut self, lane: usize, hit: &Hit, best: &mut Best) {
+        self.limit.0[lane % LANES] = hit.t;
+        self.hits = self.hits.wrapping_add(1);
+        best.replace(lane, hit);
+    }
+
     /// One of the rays, bit for bit what [`Prepared::new`] makes of it.
     #[inline(always)]
     pub(crate) fn ray(&self, lane: usize) -> Prepared {

@@ -1,7 +1,12 @@
 //! Tracing kernels: written once, compiled for each instruction set.
 
+mod batch;
+mod best;
 mod bundle;
+mod cut;
 pub(crate) mod lanes;
+mod leaf;
+mod loose;
 mod packet;
 pub(crate) mod ray;
 mod single;
@@ -10,21 +15,20 @@ mod triangle;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
-use std::mem::MaybeUninit;
-
 use ambray_core::trace::{Hit, Ray};
 
-use crate::bvh::layout::{Blas, Tlas};
+use crate::bvh::layout::{Blas, Child, Node, Tlas};
 use crate::{AlphaTest, Isa};
-use bundle::Bundle;
 use lanes::{Array, Lanes};
+use triangle::Entry;
 
 /// What is asked about a ray.
 pub(crate) trait Query {
     /// Whether the first hit found ends the ray.
     const ANY: bool;
     type Answer: Copy;
-    fn answer(hit: Hit) -> Self::Answer;
+    /// What is said of a ray: whether it has a hit, and which, where that is asked.
+    fn answer(is_hit: bool, hit: Hit) -> Self::Answer;
 }
 
 /// Asks for the closest hit.
@@ -37,7 +41,7 @@ impl Query for Closest {
     const ANY: bool = false;
     type Answer = Hit;
     #[inline(always)]
-    fn answer(hit: Hit) -> Hit {
+    fn answer(_is_hit: bool, hit: Hit) -> Hit {
         hit
     }
 }
@@ -46,8 +50,8 @@ impl Query for Any {
     const ANY: bool = true;
     type Answer = bool;
     #[inline(always)]
-    fn answer(hit: Hit) -> bool {
-        hit.is_hit()
+    fn answer(is_hit: bool, _hit: Hit) -> bool {
+        is_hit
     }
 }
 
@@ -56,6 +60,8 @@ impl Query for Any {
 pub(crate) struct Scene<'a, const W: usize> {
     /// World-space tree of all that is baked.
     pub(crate) baked: &'a Blas<W>,
+    /// Node that takes the place of its root for the rays of a batch.
+    pub(crate) entry: Option<&'a Node<W>>,
     /// Instances of meshes with trees of their own.
     pub(crate) placed: &'a Tlas<W>,
     /// Object-space trees of these meshes.
@@ -80,12 +86,42 @@ pub(crate) struct Direct {
 }
 
 impl<'a, const W: usize> Scene<'a, W> {
-    /// Trees in world space, with the instance where it is one for the whole tree.
+    /// Trees in world space.
     #[inline(always)]
-    pub(crate) fn world_trees(&self) -> impl Iterator<Item = (&'a Blas<W>, Option<u32>)> + use<'a, W> {
-        let (meshes, direct) = (self.meshes, self.direct);
-        let direct = direct.iter().map(|one| (&meshes[one.tree as usize], Some(one.instance)));
-        std::iter::once((self.baked, None)).chain(direct)
+    pub(crate) fn world_trees(&self) -> impl Iterator<Item = Trunk<'a, W>> + use<'a, W> {
+        let (meshes, alpha) = (self.meshes, self.alpha);
+        let root = self.entry.or(self.baked.nodes.first());
+        let baked = root.map(|root| Trunk { tree: self.baked, root, instance: None, alpha });
+        let direct = self.direct.iter().filter_map(move |one| {
+            let tree = &meshes[one.tree as usize];
+            let root = tree.nodes.first()?;
+            Some(Trunk { tree, root, instance: Some(one.instance), alpha })
+        });
+        baked.into_iter().chain(direct)
+    }
+}
+
+/// A tree in world space.
+#[derive(Clone, Copy)]
+pub(crate) struct Trunk<'a, const W: usize> {
+    pub(crate) tree: &'a Blas<W>,
+    /// What stands for its node 0.
+    pub(crate) root: &'a Node<W>,
+    /// As in [`Entry`].
+    pub(crate) instance: Option<u32>,
+    pub(crate) alpha: &'a dyn AlphaTest,
+}
+
+impl<'a, const W: usize> Trunk<'a, W> {
+    #[inline(always)]
+    pub(crate) fn node(&self, child: Child) -> &'a Node<W> {
+        if child == Child::ROOT { self.root } else { &self.tree.nodes[child.index()] }
+    }
+
+    /// What its triangles share for a ray with `seed`.
+    #[inline(always)]
+    pub(crate) fn entry(&self, seed: u32) -> Entry<'a> {
+        Entry { instance: self.instance, near: 0.0, seed, alpha: self.alpha }
     }
 }
 
@@ -106,7 +142,7 @@ pub(crate) fn batch<const W: usize, Q: Query>(
 {
     assert_eq!(rays.len(), answers.len(), "one answer for each ray");
     match isa {
-        Isa::Portable => generic::<W, Array<W>, Array<16>, Q>(scene, rays, answers),
+        Isa::Portable => batch::answer::<W, Array<W>, Array<16>, Q>(scene, rays, answers),
         // SAFETY: the tracer only holds instruction sets that it found available.
         Isa::Avx2 => unsafe { X86::avx2::<Q>(scene, rays, answers) },
         // SAFETY: as above.
@@ -133,11 +169,11 @@ macro_rules! kernels {
         impl Kernels<$width> for X86 {
             #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
             unsafe fn avx2<Q: Query>(scene: &Scene<'_, $width>, rays: &[Ray], answers: &mut [Q::Answer]) {
-                generic::<$width, x86::$avx2, x86::Avx2x16, Q>(scene, rays, answers);
+                batch::answer::<$width, x86::$avx2, x86::Avx2x16, Q>(scene, rays, answers);
             }
             #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt,avx512f,avx512vl,avx512dq,avx512bw")]
             unsafe fn avx512<Q: Query>(scene: &Scene<'_, $width>, rays: &[Ray], answers: &mut [Q::Answer]) {
-                generic::<$width, x86::$avx512, x86::Avx512x16, Q>(scene, rays, answers);
+                batch::answer::<$width, x86::$avx512, x86::Avx512x16, Q>(scene, rays, answers);
             }
         }
         #[cfg(not(target_arch = "x86_64"))]
@@ -153,27 +189,3 @@ macro_rules! kernels {
 }
 kernels!(8, Avx2x8, Avx2x8);
 kernels!(16, Avx2x16, Avx512x16);
-
-#[inline(always)]
-fn generic<const W: usize, L: Lanes<W>, R: Lanes<16>, Q: Query>(
-    scene: &Scene<'_, W>,
-    rays: &[Ray],
-    answers: &mut [Q::Answer],
-) {
-    let mut single = vec![MaybeUninit::uninit(); scene.stack];
-    if !scene.packets {
-        for (ray, answer) in rays.iter().zip(answers) {
-            *answer = Q::answer(single::trace::<W, L, Q>(scene, ray, &mut single));
-        }
-        return;
-    }
-    let mut scratch = packet::Scratch { packet: vec![MaybeUninit::uninit(); scene.stack], single };
-    let (mut rays, mut answers) = (rays, answers);
-    while !rays.is_empty() {
-        let (bundle, count) = Bundle::next::<R>(rays);
-        let (now, later) = rays.split_at(count);
-        let (first, rest) = answers.split_at_mut(count);
-        packet::trace::<W, L, R, Q>(scene, &bundle, now, first, &mut scratch);
-        (rays, answers) = (later, rest);
-    }
-}

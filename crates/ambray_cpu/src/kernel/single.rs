@@ -27,9 +27,10 @@ pub(crate) fn trace<const W: usize, L: Lanes<W>, Q: Query>(
     };
     let mut best = Hit { t: ray.t_max, ..Hit::MISS };
     let mut answered = false;
-    for (tree, instance) in scene.world_trees() {
-        let entry = Entry { instance, near: 0.0, seed: ray.seed, alpha: scene.alpha };
-        answered = blas::<W, L, Q>(tree, Child::ROOT, &prepared, &entry, &mut best, stack) && Q::ANY;
+    for trunk in scene.world_trees() {
+        let entry = trunk.entry(ray.seed);
+        answered = blas::<W, L, Q>(trunk.tree, trunk.root, Child::ROOT, &prepared, &entry, &mut best, stack)
+            && Q::ANY;
         if answered {
             break;
         }
@@ -52,7 +53,9 @@ pub(crate) fn instances<const W: usize, L: Lanes<W>, Q: Query>(
     let (above, below) = stack.split_at_mut(scene.instance_stack);
     let limit = best.t;
     let visitor = Instances::<W, L, Q> { scene, ray, best, stack: below, lanes: PhantomData };
-    walk::<W, L>(&scene.placed.nodes, Child::ROOT, prepared, limit, above, visitor)
+    let nodes = &scene.placed.nodes[..];
+    let Some(root) = nodes.first() else { return false };
+    walk::<W, L>(nodes, root, Child::ROOT, prepared, limit, above, visitor)
 }
 
 /// Leaves of the tree over instances.
@@ -73,7 +76,9 @@ impl<const W: usize, L: Lanes<W>, Q: Query> Leaves for Instances<'_, W, L, Q> {
             let tree = &self.scene.meshes[placed.blas as usize];
             let instance = Some(placed.instance);
             let entry = Entry { instance, near, seed: ray.seed, alpha: self.scene.alpha };
-            if blas::<W, L, Q>(tree, Child::ROOT, &object, &entry, self.best, self.stack) {
+            if let Some(root) = tree.nodes.first()
+                && blas::<W, L, Q>(tree, root, Child::ROOT, &object, &entry, self.best, self.stack)
+            {
                 return None;
             }
         }
@@ -81,22 +86,20 @@ impl<const W: usize, L: Lanes<W>, Q: Query> Leaves for Instances<'_, W, L, Q> {
     }
 }
 
-/// Visits a tree of triangles below `start`. Returns whether the query is answered.
+/// Visits a tree of triangles below `start`; `root` stands for its node 0. Returns whether the query is answered.
 #[inline(always)]
 pub(crate) fn blas<const W: usize, L: Lanes<W>, Q: Query>(
     tree: &Blas<W>,
+    root: &Node<W>,
     start: Child,
     ray: &Prepared,
     entry: &Entry<'_>,
     best: &mut Hit,
     stack: &mut [MaybeUninit<Pending>],
 ) -> bool {
-    if tree.nodes.is_empty() {
-        return false;
-    }
     let limit = best.t;
     let visitor = Blocks::<W, L, Q> { tree, ray, entry, best, lanes: PhantomData };
-    walk::<W, L>(&tree.nodes, start, ray, limit, stack, visitor)
+    walk::<W, L>(&tree.nodes, root, start, ray, limit, stack, visitor)
 }
 
 /// Leaves of a tree of triangles.
@@ -112,8 +115,8 @@ impl<const W: usize, L: Lanes<W>, Q: Query> Leaves for Blocks<'_, W, L, Q> {
     #[inline(always)]
     fn visit(&mut self, leaf: usize, _near: f32) -> Option<f32> {
         let block = &self.tree.blocks[leaf];
-        let answered = triangle::block::<W, L, Q>(block, self.ray, self.entry, self.best);
-        if answered { None } else { Some(self.best.t) }
+        let found = triangle::block::<L::Eight, Q>(block, self.ray, self.entry, self.best);
+        if found && Q::ANY { None } else { Some(self.best.t) }
     }
 }
 
@@ -124,10 +127,11 @@ trait Leaves {
     fn visit(&mut self, leaf: usize, near: f32) -> Option<f32>;
 }
 
-/// Walks the tree front to back through all that the ray meets within `limit`. Returns whether a leaf stopped it.
+/// Walks the tree front to back through all that the ray meets within `limit`; `root` stands for node 0. Returns whether a leaf stopped it.
 #[inline(always)]
 fn walk<const W: usize, L: Lanes<W>>(
     nodes: &[Node<W>],
+    root: &Node<W>,
     start: Child,
     ray: &Prepared,
     mut limit: f32,
@@ -144,7 +148,7 @@ fn walk<const W: usize, L: Lanes<W>>(
                 None => return true,
             }
         } else {
-            let node = &nodes[child.index()];
+            let node = if child == Child::ROOT { root } else { &nodes[child.index()] };
             let (mut mask, near) = slab::children::<W, L>(node, ray, limit);
             let near = near.to_array();
             let bottom = top;

@@ -18,19 +18,19 @@ use super::Query;
 use super::lanes::Lanes;
 use super::ray::Prepared;
 use super::slab;
-use crate::bvh::layout::Block;
+use crate::bvh::layout::{Block, FAT};
 
-/// Lets `ray` see all triangles of a block. Returns whether the query is answered.
+/// Lets `ray` see all triangles of a block. Returns whether it has a new best hit, with which an any-hit query is answered.
 #[inline(always)]
-pub(crate) fn block<const W: usize, L: Lanes<W>, Q: Query>(
-    block: &Block<W>,
+pub(crate) fn block<L: Lanes<FAT>, Q: Query>(
+    block: &Block,
     ray: &Prepared,
     entry: &Entry<'_>,
     best: &mut Hit,
 ) -> bool {
-    let (ax, ay) = corner::<W, L>(&block.corners[0], ray);
-    let (bx, by) = corner::<W, L>(&block.corners[1], ray);
-    let (cx, cy) = corner::<W, L>(&block.corners[2], ray);
+    let (ax, ay) = corner::<L>(&block.corners[0], ray);
+    let (bx, by) = corner::<L>(&block.corners[1], ray);
+    let (cx, cy) = corner::<L>(&block.corners[2], ray);
     let u = cx.mul(by).sub(cy.mul(bx));
     let v = ax.mul(cy).sub(ay.mul(cx));
     let w = bx.mul(ay).sub(by.mul(ax));
@@ -40,23 +40,48 @@ pub(crate) fn block<const W: usize, L: Lanes<W>, Q: Query>(
     if inside == 0 {
         return false;
     }
+    // Most triangles on the line of the ray are behind it or too far.
+    let (met, near) = boxes::<L>(block, ray, best.t);
+    let mut candidates = inside & met;
+    if candidates == 0 {
+        return false;
+    }
     let determinant = u.add(v).add(w);
-    let (v, w, determinant) = (v.to_array(), w.to_array(), determinant.to_array());
-    let mut candidates = inside;
+    let (v, w, determinant, near) = (v.to_array(), w.to_array(), determinant.to_array(), near.to_array());
+    let mut found = false;
     while candidates != 0 {
-        let lane = candidates.trailing_zeros() as usize;
+        let lane = candidates.trailing_zeros() as usize % FAT;
         candidates &= candidates - 1;
-        let covered = [v[lane % W], w[lane % W], determinant[lane % W]];
-        if candidate(block, lane, ray, entry, covered, best) && Q::ANY {
+        let covered = Covered { v: v[lane], w: w[lane], determinant: determinant[lane], near: near[lane] };
+        found |= candidate(block, lane, ray, entry, covered, best);
+        if found && Q::ANY {
             return true;
         }
     }
-    false
+    found
+}
+
+/// Triangles whose boxes `ray` meets for t in [0, `limit`], and the near distances of all.
+#[inline(always)]
+fn boxes<L: Lanes<FAT>>(block: &Block, ray: &Prepared, limit: f32) -> (u32, L) {
+    let mut near = L::splat(0.0);
+    let mut far = L::splat(f32::INFINITY);
+    for axis in 0..3 {
+        let a = L::load(&block.corners[0][axis]);
+        let b = L::load(&block.corners[1][axis]);
+        let c = L::load(&block.corners[2][axis]);
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+        let (first, last) = if ray.near[axis] >= 3 { (high, low) } else { (low, high) };
+        let (origin, reciprocal) = (L::splat(ray.origin[axis]), L::splat(ray.reciprocal[axis]));
+        near = first.sub(origin).mul(reciprocal).max(near);
+        far = last.sub(origin).mul(reciprocal).min(far);
+    }
+    (near.le(far.mul(L::splat(slab::WIDEN)).min(L::splat(limit))), near)
 }
 
 /// One corner of all triangles, translated and sheared.
 #[inline(always)]
-fn corner<const W: usize, L: Lanes<W>>(axes: &[[f32; W]; 3], ray: &Prepared) -> (L, L) {
+fn corner<L: Lanes<FAT>>(axes: &[[f32; FAT]; 3], ray: &Prepared) -> (L, L) {
     let [x, y, z] = ray.axes;
     let depth = L::load(&axes[z]).sub(L::splat(ray.origin[z]));
     (
@@ -76,46 +101,66 @@ pub(crate) struct Entry<'a> {
     pub(crate) alpha: &'a dyn crate::AlphaTest,
 }
 
-/// Distance at which `ray` meets the plane of a triangle; not above 0 or not a number if it does not.
-///
-/// Differences of the corners are exact in double precision, or nearly, so the sign is right however thin the triangle.
-#[inline(always)]
-fn plane_distance<const W: usize>(block: &Block<W>, lane: usize, ray: &Prepared) -> f32 {
-    let [x, y, z] = ray.axes;
-    let corner = |i: usize| {
-        [x, y, z].map(|axis| f64::from(block.corners[i][axis][lane]) - f64::from(ray.origin[axis]))
-    };
-    let (a, b, c) = (corner(0), corner(1), corner(2));
-    let e1 = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
-    let e2 = [c[0] - a[0], c[1] - a[1], c[2] - a[2]];
-    let normal =
-        [e1[1] * e2[2] - e1[2] * e2[1], e1[2] * e2[0] - e1[0] * e2[2], e1[0] * e2[1] - e1[1] * e2[0]];
-    let [sx, sy, per_depth] = ray.shear.map(f64::from);
-    let depth = (normal[0] * a[0] + normal[1] * a[1] + normal[2] * a[2])
-        / (normal[0] * sx + normal[1] * sy + normal[2]);
-    (depth * per_depth) as f32
+/// Plane of a triangle in double precision, with axes permuted as its rays have them.
+#[derive(Clone, Copy)]
+pub(crate) struct Plane {
+    pub(crate) corner: [f64; 3],
+    pub(crate) normal: [f64; 3],
 }
 
-/// Decides on a triangle that covers the ray: distance, box of the triangle, order among equal t, alpha. Returns whether it
-/// became the best hit.
+/// A corner of a triangle with axes permuted.
 #[inline(always)]
-pub(crate) fn candidate<const W: usize>(
-    block: &Block<W>,
+fn at(block: &Block, corner: usize, lane: usize, [x, y, z]: [usize; 3]) -> [f64; 3] {
+    let axes = &block.corners[corner];
+    [f64::from(axes[x][lane % FAT]), f64::from(axes[y][lane % FAT]), f64::from(axes[z][lane % FAT])]
+}
+
+impl Plane {
+    #[inline(always)]
+    pub(crate) fn of(block: &Block, lane: usize, axes: [usize; 3]) -> Self {
+        let (a, b, c) = (at(block, 0, lane, axes), at(block, 1, lane, axes), at(block, 2, lane, axes));
+        let e1 = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
+        let e2 = [c[0] - a[0], c[1] - a[1], c[2] - a[2]];
+        let normal =
+            [e1[1] * e2[2] - e1[2] * e2[1], e1[2] * e2[0] - e1[0] * e2[2], e1[0] * e2[1] - e1[1] * e2[0]];
+        Self { corner: a, normal }
+    }
+
+    /// Distance at which a ray meets the plane; not above 0 or not a number if it does not. Both are given in permuted axes.
+    ///
+    /// Differences of the corners are exact in double precision, or nearly, so the sign is right however thin the triangle.
+    #[inline(always)]
+    pub(crate) fn distance(&self, origin: [f32; 3], shear: [f32; 3]) -> f32 {
+        let [x, y, z] = self.normal;
+        let a = [0, 1, 2].map(|axis| self.corner[axis] - f64::from(origin[axis]));
+        let [sx, sy, per_depth] = shear.map(f64::from);
+        let depth = (x * a[0] + y * a[1] + z * a[2]) / (x * sx + y * sy + z);
+        (depth * per_depth) as f32
+    }
+}
+
+/// Edge functions of a triangle that covers the ray, and the near distance of its box, which the ray meets.
+#[derive(Clone, Copy)]
+struct Covered {
+    v: f32,
+    w: f32,
+    determinant: f32,
+    near: f32,
+}
+
+/// Decides on a triangle that covers the ray: distance, order among equal t, alpha. Returns whether it became the best hit.
+#[inline(always)]
+fn candidate(
+    block: &Block,
     lane: usize,
     ray: &Prepared,
     entry: &Entry<'_>,
-    [v, w, determinant]: [f32; 3],
+    Covered { v, w, determinant, near }: Covered,
     best: &mut Hit,
 ) -> bool {
-    let lane = lane % W;
-    // The box first: it is cheaper, and most triangles on the line of the ray are behind it or too far.
-    let Some(near) = slab::one(&planes(block, lane), ray) else {
-        return false;
-    };
-    if near > best.t {
-        return false;
-    }
-    let t = plane_distance(block, lane, ray);
+    let lane = lane % FAT;
+    let origin = ray.axes.map(|axis| ray.origin[axis]);
+    let t = Plane::of(block, lane, ray.axes).distance(origin, ray.shear);
     // Written so that what is not a number fails; a determinant of 0 is a triangle seen edge-on.
     if !(t > 0.0 && t <= best.t) || determinant == 0.0 {
         return false;
@@ -137,12 +182,15 @@ pub(crate) fn candidate<const W: usize>(
 
 /// Box of one triangle of a block.
 #[inline(always)]
-pub(crate) fn planes<const W: usize>(block: &Block<W>, lane: usize) -> [f32; 6] {
+pub(crate) fn planes(block: &Block, lane: usize) -> [f32; 6] {
     let mut planes = [0.0; 6];
     for axis in 0..3 {
-        let [a, b, c] = [0, 1, 2].map(|corner| block.corners[corner][axis][lane]);
-        planes[axis] = a.min(b).min(c);
-        planes[axis + 3] = a.max(b).max(c);
+        let corners = &block.corners;
+        let (a, b, c) = (corners[0][axis][lane], corners[1][axis][lane], corners[2][axis][lane]);
+        // As the vectors do it: no more than one instruction each.
+        let (low, high) = if a < b { (a, b) } else { (b, a) };
+        planes[axis] = if low < c { low } else { c };
+        planes[axis + 3] = if high > c { high } else { c };
     }
     planes
 }

@@ -158,7 +158,11 @@ impl Worker {
             self.copy();
         }
         self.waiting = None;
-        let (Some(open), Some(shot)) = (&mut self.open, self.gallery.shot(side)) else {
+        // A pixel outside a coarse picture is one of the picture that follows.
+        let is_there = |shot: &Arc<Shot>| {
+            shot.level.is_final || pixel.0 < shot.frame.width && pixel.1 < shot.frame.height
+        };
+        let (Some(open), Some(shot)) = (&mut self.open, self.gallery.shot(side).filter(is_there)) else {
             self.waiting = Some((side, pixel));
             return;
         };

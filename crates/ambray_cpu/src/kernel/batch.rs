@@ -1,0 +1,103 @@
+//! The rays of a batch: which go together, and which alone.
+
+use std::mem::MaybeUninit;
+
+use ambray_core::trace::{Hit, Ray};
+
+use super::bundle::{Bundle, LANES};
+use super::lanes::{Lanes, Rays};
+use super::loose::Loose;
+use super::{Query, Scene, cut, packet, single};
+
+/// Rays of a group that is worth a packet of its own; those of others look for company in the whole batch.
+const TOGETHER: u32 = 12;
+
+/// Answers `rays`.
+#[inline(always)]
+pub(super) fn answer<const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
+    scene: &Scene<'_, W>,
+    rays: &[Ray],
+    answers: &mut [Q::Answer],
+) {
+    let cut = scene.baked.nodes.first().map(|_| cut::root(&scene.baked.nodes, rays));
+    let scene = &Scene { entry: cut.as_ref(), ..*scene };
+    let mut single = vec![MaybeUninit::uninit(); scene.stack];
+    if !scene.packets {
+        for (ray, answer) in rays.iter().zip(answers) {
+            let hit = single::trace::<W, L, Q>(scene, ray, &mut single);
+            *answer = Q::answer(hit.is_hit(), hit);
+        }
+        return;
+    }
+    let mut scratch = packet::Scratch { packet: vec![MaybeUninit::uninit(); scene.stack], single };
+    let mut loose = Loose::default();
+    in_order::<W, L, R, Q>(scene, rays, answers, &mut scratch, &mut loose);
+    by_direction::<W, L, R, Q>(scene, rays, answers, &mut scratch, &mut loose);
+}
+
+/// Answers the rays that agree with their neighbours in the batch; the others become loose.
+#[inline(always)]
+fn in_order<const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
+    scene: &Scene<'_, W>,
+    rays: &[Ray],
+    answers: &mut [Q::Answer],
+    scratch: &mut packet::Scratch,
+    loose: &mut Loose,
+) {
+    let mut first = 0;
+    while first < rays.len() {
+        let (bundle, count) = Bundle::next::<R>(&rays[first..]);
+        let (rays, answers) = (&rays[first..][..count], &mut answers[first..][..count]);
+        for (lane, answer) in answers.iter_mut().enumerate() {
+            if bundle.able >> lane & 1 == 0 {
+                *answer = Q::answer(false, Hit::MISS);
+            }
+        }
+        let mut waiting = bundle.able;
+        while waiting != 0 {
+            let group = bundle.group(waiting);
+            waiting &= !group;
+            if group.count_ones() >= TOGETHER {
+                packet::trace::<W, L, R, Q>(scene, &bundle, group, rays, answers, scratch);
+                continue;
+            }
+            let mut lanes = group;
+            while lanes != 0 {
+                let lane = lanes.trailing_zeros() as usize % LANES;
+                lanes &= lanes - 1;
+                loose.push(first + lane, rays[lane].direction);
+            }
+        }
+        first += count;
+    }
+}
+
+/// Answers the loose rays, those of like directions together.
+#[inline(always)]
+fn by_direction<const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
+    scene: &Scene<'_, W>,
+    rays: &[Ray],
+    answers: &mut [Q::Answer],
+    scratch: &mut packet::Scratch,
+    loose: &mut Loose,
+) {
+    let mut order = loose.sort();
+    while let Some(together) = Loose::take::<LANES>(&mut order) {
+        let mut some = [rays[together[0].index as usize]; LANES];
+        for (ray, loose) in some.iter_mut().zip(together) {
+            *ray = rays[loose.index as usize];
+        }
+        let some = &some[..together.len()];
+        let bundle = Bundle::of::<R>(some);
+        let mut found = [Q::answer(false, Hit::MISS); LANES];
+        let mut waiting = bundle.able;
+        while waiting != 0 {
+            let group = bundle.group(waiting);
+            waiting &= !group;
+            packet::trace::<W, L, R, Q>(scene, &bundle, group, some, &mut found, scratch);
+        }
+        for (loose, answer) in together.iter().zip(found) {
+            answers[loose.index as usize] = answer;
+        }
+    }
+}
