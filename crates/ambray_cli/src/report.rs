@@ -234,6 +234,10 @@ pub struct StageReport {
     pub top_level_ms: f64,
     /// Copying the frame from a device, wall time.
     pub transfer_ms: f64,
+    /// Tracing rays, part of the stages above; 0 on a device.
+    pub tracing_ms: f64,
+    /// For how long a thread had nothing to do, mean over the threads; 0 on a device.
+    pub idle_ms: f64,
     /// The whole frame, wall time. The first frame of a device compiles its programs.
     pub total_ms: f64,
 }
@@ -251,6 +255,8 @@ impl StageReport {
             bottom_level_ms: milliseconds(times.bottom_level),
             top_level_ms: milliseconds(times.top_level),
             transfer_ms: milliseconds(times.transfer),
+            tracing_ms: milliseconds(times.tracing),
+            idle_ms: milliseconds(times.idle),
             total_ms: milliseconds(times.total),
         }
     }
@@ -398,7 +404,7 @@ fn camera_line(camera: &CameraReport) -> String {
     format!("{}: at {position}, looking along {forward}, {projection}", camera.origin)
 }
 
-/// Times of the stages in a line; the last two only where they are something.
+/// Times of the stages in a line; those of motion and transfer, and what part is tracing, only where they are something.
 #[must_use]
 pub fn times_line(times: &StageReport) -> String {
     let stages = [
@@ -413,7 +419,13 @@ pub fn times_line(times: &StageReport) -> String {
     ];
     let told = stages.into_iter().filter(|&(_, ms, always)| always || ms > 0.0);
     let told: Vec<_> = told.map(|(name, ms, _)| format!("{name} {}", short(ms))).collect();
-    format!("{} ms: {}", short(times.total_ms), told.join(", "))
+    let mut line = format!("{} ms: {}", short(times.total_ms), told.join(", "));
+    if times.tracing_ms > 0.0 {
+        let share = |ms: f64| 100.0 * ms / times.total_ms.max(f64::MIN_POSITIVE);
+        let (tracing, idle) = (share(times.tracing_ms), share(times.idle_ms));
+        let _ = write!(line, "; tracing {tracing:.0} %, threads idle {idle:.0} %");
+    }
+    line
 }
 
 /// Milliseconds, with hundredths where they are few.

@@ -95,7 +95,7 @@ impl Quality {
     }
 }
 
-/// Children of a node, and triangles of a leaf.
+/// Children of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Width {
     /// One AVX2 register.

@@ -273,6 +273,8 @@ fn medians(stages: &[StageReport]) -> StageReport {
         bottom_level_ms: median(|s| s.bottom_level_ms),
         top_level_ms: median(|s| s.top_level_ms),
         transfer_ms: median(|s| s.transfer_ms),
+        tracing_ms: median(|s| s.tracing_ms),
+        idle_ms: median(|s| s.idle_ms),
         total_ms: median(|s| s.total_ms),
     }
 }

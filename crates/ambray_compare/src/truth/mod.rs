@@ -21,7 +21,7 @@ const BATCH: u32 = 512;
 const LEAST: u32 = 2;
 /// Of the way truths are found: another number makes kept ones worthless. To be raised with every change of what converged
 /// light is: of tracing, offsets, surfaces, textures.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// How good a truth must be, and where truths are kept.
 #[derive(Clone, Debug)]

@@ -167,7 +167,7 @@ impl Bundle {
             let origin = R::select(group, self.origin[axis].load(), R::splat(self.origin[axis].0[lane]));
             packet.origin[axis] = Numbers(origin.to_array());
             let (low, high) = (origin.smallest(), origin.largest());
-            let is_down = near[axis] >= 3;
+            let is_down = is(self.down[axis]);
             packet.origins[axis] = if is_down { [low, high] } else { [high, low] };
             let direction =
                 R::select(group, self.direction[axis].load(), R::splat(self.direction[axis].0[lane]));
@@ -197,7 +197,7 @@ pub(crate) struct Packet {
     pub(crate) origin: [Numbers; 3],
     pub(crate) reciprocal: [Numbers; 3],
     pub(crate) shear: [Numbers; 3],
-    /// t of the best hits so far, or ends of the rays; negative for rays that are answered or absent.
+    /// t of the best hits so far, or ends of the rays; negative for rays that are absent.
     pub(crate) limit: Numbers,
     /// For each axis the origins that are farthest and least far along the rays.
     pub(crate) origins: [[f32; 2]; 3],

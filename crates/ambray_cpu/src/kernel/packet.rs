@@ -65,8 +65,9 @@ pub(crate) fn trace<const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
         let mut is_hit = best.found >> lane & 1 != 0;
         let mut hit = best.hit(lane, packet.limit.0[lane]);
         let ray = &rays[lane];
-        if !scene.placed.nodes.is_empty()
-            && !(Q::ANY && is_hit)
+        let is_answered = Q::ANY && is_hit;
+        if !is_answered
+            && !scene.placed.nodes.is_empty()
             && let Some(prepared) = Prepared::new(ray.origin, ray.direction)
         {
             single::instances::<W, L, Q>(scene, ray, &prepared, &mut hit, &mut scratch.single);
@@ -183,7 +184,7 @@ fn walk<const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
 /// (plane − origin) · reciprocal is monotone in both factors. The near distance of a box counts only where it is positive:
 /// there the origin nearest to the plane and the smallest reciprocal bound it from below. Where the far distance is
 /// negative no ray meets the box; elsewhere the origin farthest from the plane and the largest reciprocal bound it from
-/// above.
+/// above. (No product underflows to −0: reciprocals of unit directions are no smaller than 1.)
 #[inline(always)]
 pub(crate) fn overlaps<const W: usize, L: Lanes<W>>(planes: &[[f32; W]; 6], packet: &Packet) -> (u32, L) {
     let mut near = L::splat(0.0);
