@@ -4,7 +4,7 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Isa {
-    /// What every processor of the target has (SSE2 on x86-64, NEON on AArch64), by plain Rust over arrays.
+    /// What every processor of the target has: SSE2 on x86-64; elsewhere plain Rust over arrays.
     Portable,
     /// x86-64-v3: AVX2 with its companions BMI and FMA. Products and sums stay separate, so results do not change.
     Avx2,

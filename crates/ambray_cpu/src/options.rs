@@ -12,7 +12,7 @@ pub struct BuildOptions {
     pub quality: Quality,
     /// Instruction set of the kernels; `None` takes the best of this machine.
     pub isa: Option<Isa>,
-    /// Children of a node; `None` takes what suits the instruction set.
+    /// Children of a node; `None` takes the default.
     pub width: Option<Width>,
     /// Whether rays of a batch are traced in packets of 16 where they share directions. Default true.
     pub packets: bool,
@@ -96,11 +96,12 @@ impl Quality {
 }
 
 /// Children of a node.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Width {
     /// One AVX2 register.
     Eight,
-    /// One AVX-512 register.
+    /// One AVX-512 register. The default with every instruction set: packets visit fewer nodes.
+    #[default]
     Sixteen,
 }
 

@@ -96,10 +96,7 @@ impl Core {
         let start = Instant::now();
         let isa = options.isa.unwrap_or_else(Isa::detect);
         assert!(isa.is_available(), "this machine lacks {}", isa.name());
-        let width = options.width.unwrap_or(match isa {
-            Isa::Avx512 => Width::Sixteen,
-            _ => Width::Eight,
-        });
+        let width = options.width.unwrap_or_default();
         let trees = match width {
             Width::Eight => Trees::Eight(Levels::build(scene, alpha, &options)),
             Width::Sixteen => Trees::Sixteen(Levels::build(scene, alpha, &options)),

@@ -1,5 +1,7 @@
 //! Tracing kernels: written once, compiled for each instruction set.
 
+#[cfg(any(test, not(target_arch = "x86_64")))]
+mod array;
 mod batch;
 mod best;
 mod bundle;
@@ -11,6 +13,8 @@ mod packet;
 pub(crate) mod ray;
 mod single;
 pub(crate) mod slab;
+#[cfg(target_arch = "x86_64")]
+mod sse2;
 mod triangle;
 #[cfg(target_arch = "x86_64")]
 mod x86;
@@ -19,7 +23,6 @@ use ambray_core::trace::{Hit, Ray};
 
 use crate::bvh::layout::{Blas, Child, Node, Tlas};
 use crate::{AlphaTest, Isa};
-use lanes::{Array, Lanes};
 use triangle::Entry;
 
 /// What is asked about a ray.
@@ -137,24 +140,24 @@ pub(crate) fn batch<const W: usize, Q: Query>(
     rays: &[Ray],
     answers: &mut [Q::Answer],
 ) where
-    Array<W>: Lanes<W>,
-    X86: Kernels<W>,
+    Compiled: Kernels<W>,
 {
     assert_eq!(rays.len(), answers.len(), "one answer for each ray");
     match isa {
-        Isa::Portable => batch::answer::<W, Array<W>, Array<16>, Q>(scene, rays, answers),
+        Isa::Portable => Compiled::portable::<Q>(scene, rays, answers),
         // SAFETY: the tracer only holds instruction sets that it found available.
-        Isa::Avx2 => unsafe { X86::avx2::<Q>(scene, rays, answers) },
+        Isa::Avx2 => unsafe { Compiled::avx2::<Q>(scene, rays, answers) },
         // SAFETY: as above.
-        Isa::Avx512 => unsafe { X86::avx512::<Q>(scene, rays, answers) },
+        Isa::Avx512 => unsafe { Compiled::avx512::<Q>(scene, rays, answers) },
     }
 }
 
-/// Carrier of the x86-64 kernels for each width.
-pub(crate) struct X86;
+/// Carrier of the kernels for each width.
+pub(crate) struct Compiled;
 
-/// The kernels of one width; on other machines they are never called.
+/// The kernels of one width, for each instruction set; those that only x86-64 has are never called on other machines.
 pub(crate) trait Kernels<const W: usize> {
+    fn portable<Q: Query>(scene: &Scene<'_, W>, rays: &[Ray], answers: &mut [Q::Answer]);
     /// # Safety
     /// [`Isa::Avx2`] must be available.
     unsafe fn avx2<Q: Query>(scene: &Scene<'_, W>, rays: &[Ray], answers: &mut [Q::Answer]);
@@ -164,9 +167,12 @@ pub(crate) trait Kernels<const W: usize> {
 }
 
 macro_rules! kernels {
-    ($width:literal, $avx2:ident, $avx512:ident) => {
+    ($width:literal, $sse2:ident, $avx2:ident, $avx512:ident) => {
         #[cfg(target_arch = "x86_64")]
-        impl Kernels<$width> for X86 {
+        impl Kernels<$width> for Compiled {
+            fn portable<Q: Query>(scene: &Scene<'_, $width>, rays: &[Ray], answers: &mut [Q::Answer]) {
+                batch::answer::<$width, sse2::$sse2, sse2::Sse2x16, Q>(scene, rays, answers);
+            }
             #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
             unsafe fn avx2<Q: Query>(scene: &Scene<'_, $width>, rays: &[Ray], answers: &mut [Q::Answer]) {
                 batch::answer::<$width, x86::$avx2, x86::Avx2x16, Q>(scene, rays, answers);
@@ -177,7 +183,10 @@ macro_rules! kernels {
             }
         }
         #[cfg(not(target_arch = "x86_64"))]
-        impl Kernels<$width> for X86 {
+        impl Kernels<$width> for Compiled {
+            fn portable<Q: Query>(scene: &Scene<'_, $width>, rays: &[Ray], answers: &mut [Q::Answer]) {
+                batch::answer::<$width, array::Array<$width>, array::Array<16>, Q>(scene, rays, answers);
+            }
             unsafe fn avx2<Q: Query>(_: &Scene<'_, $width>, _: &[Ray], _: &mut [Q::Answer]) {
                 unreachable!("x86-64 only");
             }
@@ -187,5 +196,5 @@ macro_rules! kernels {
         }
     };
 }
-kernels!(8, Avx2x8, Avx2x8);
-kernels!(16, Avx2x16, Avx512x16);
+kernels!(8, Sse2x8, Avx2x8, Avx2x8);
+kernels!(16, Sse2x16, Avx2x16, Avx512x16);

@@ -54,35 +54,29 @@ pub(super) fn contenders(
     Ok(contenders)
 }
 
-/// Builds trees of every quality in every width that `isas` take, `rounds` times in turn, at least once.
+/// Builds trees of every quality in the width that the tracer takes by itself, `rounds` times in turn, at least once.
 pub(super) fn builds(
     scene: &Scene,
-    isas: &[Isa],
     threads: usize,
     rounds: u32,
     progress: &Progress,
 ) -> anyhow::Result<Vec<BuildReport>> {
-    // What the tracer takes by itself.
-    let width_of = |isa: Isa| if isa == Isa::Avx512 { Width::Sixteen } else { Width::Eight };
-    let is_taken = |width: &Width| isas.iter().any(|&isa| width_of(isa) == *width);
-    let widths = Width::ALL.into_iter().rev().filter(is_taken);
-    let kinds: Vec<(Quality, Width)> =
-        widths.flat_map(|width| Quality::ALL.map(|quality| (quality, width))).collect();
-    let mut built: Vec<Vec<Stats>> = vec![Vec::new(); kinds.len()];
+    let width = Width::default();
+    let mut built: Vec<Vec<Stats>> = vec![Vec::new(); Quality::ALL.len()];
+    let kinds = built.len();
     for round in 0..rounds {
-        for (i, (&(quality, width), built)) in kinds.iter().zip(&mut built).enumerate() {
+        for (i, (quality, built)) in Quality::ALL.into_iter().zip(&mut built).enumerate() {
             let options = BuildOptions { width: Some(width), ..of_quality(quality) };
             built.push(*build(scene, options, threads)?.stats());
             check_interrupted()?;
-            progress
-                .report((round as usize * kinds.len() + i) as f32 / (rounds as usize * kinds.len()) as f32);
+            progress.report((round as usize * kinds + i) as f32 / (rounds as usize * kinds) as f32);
         }
     }
-    let report = |(&(quality, width), stats): (&(Quality, Width), &Vec<Stats>)| {
+    let report = |(quality, stats): (Quality, &Vec<Stats>)| {
         let times: Vec<f64> = stats.iter().map(|stats| milliseconds(stats.build_time)).collect();
         BuildReport::new(quality, width, &stats[0], &times)
     };
-    Ok(kinds.iter().zip(&built).map(report).collect())
+    Ok(Quality::ALL.into_iter().zip(&built).map(report).collect())
 }
 
 fn of_quality(quality: Quality) -> BuildOptions {

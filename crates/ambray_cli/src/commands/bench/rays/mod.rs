@@ -66,7 +66,7 @@ fn measure(args: &BenchArgs, folder: &RaysFolder, report: &mut RaysReport) -> an
     let (isas, builds) = (isas(args), args.rays.builds());
     if builds > 0 {
         let progress = Progress::new("building", args.run.quiet);
-        report.builds = measure::builds(&scene, &isas, report.threads, builds, &progress)?;
+        report.builds = measure::builds(&scene, report.threads, builds, &progress)?;
     }
     if says(args) {
         terminal::print(&report.head())?;
