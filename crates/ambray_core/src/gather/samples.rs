@@ -62,6 +62,13 @@ impl Run {
 }
 
 impl Samples {
+    /// Point and number of the sample in `slot`.
+    pub(super) fn place(&self, slot: usize) -> (usize, usize) {
+        let run = self.runs[self.runs.partition_point(|run| run.slots <= slot) - 1];
+        let within = slot - run.slots;
+        (run.first + within % run.points, within / run.points)
+    }
+
     /// Makes room for the samples of `points`. What was there stays until it is written.
     pub(super) fn begin(&mut self, params: &GatherParams<'_>, points: &[ShadedPoint]) {
         let spp = params.samples.spp() as usize;

@@ -52,7 +52,10 @@ pub fn record(
     for (points, out) in points.chunks(batch).zip(out.chunks_mut(batch)) {
         gather_batch(world, params, points, scratch, out);
         let rays = scratch.first.rays.iter().zip(&scratch.first.slots);
-        let rays = rays.map(|(&ray, slot)| Recorded { ray, point: before + slot / spp, number: slot % spp });
+        let rays = rays.map(|(&ray, &slot)| {
+            let (point, number) = scratch.first.samples.place(slot as usize);
+            Recorded { ray, point: before + point as u32, number: number as u32 }
+        });
         recording.ambient.extend(rays);
         if params.thin != Thin::Off {
             let rays = scratch.chords.rays.iter().zip(&scratch.chords.chords);
