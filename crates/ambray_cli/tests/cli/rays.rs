@@ -83,7 +83,7 @@ fn rays_of_a_frame_are_written_and_measured() {
     let modes: Vec<_> = portable.iter().map(|r| (r["mode"].as_str(), r["order"].as_str())).collect();
     assert_eq!(modes, [(Some("packets"), Some("traced")), (Some("single"), Some("pixel"))]);
     let builds = report["builds"].as_array().expect("a list");
-    assert!(builds.iter().any(|b| b["quality"] == "best-trace" && b["width"] == 8), "{builds:?}");
+    assert!(builds.iter().any(|b| b["quality"] == "best-trace" && b["width"] == 16), "{builds:?}");
     assert!(builds.iter().all(|b| b["bytes_per_triangle"].as_f64().is_some_and(|bytes| bytes > 0.0)));
 
     // The files alone give the same.
