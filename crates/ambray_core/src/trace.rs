@@ -5,7 +5,7 @@ use glam::Vec3;
 
 use crate::sampling::{pcg, unit_float};
 
-/// A ray segment from `origin` along the unit vector `direction`, for parameters t in (0, `t_max`).
+/// A ray segment from `origin` along the unit vector `direction`, for parameters t in (0, `t_max`].
 ///
 /// `t_min` is always 0: origins are moved off their surface by [`RayOffset`](crate::offset::RayOffset)
 /// (spec §5), since a positive `t_min` leaks light under sheets that touch the floor.

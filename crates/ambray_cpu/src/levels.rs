@@ -40,7 +40,7 @@ pub(crate) struct Levels<const W: usize> {
 impl<const W: usize> Levels<W> {
     pub(crate) fn build(scene: &Scene, alpha: &dyn AlphaTest, options: &BuildOptions) -> Self {
         let parts = Parts::of(scene, alpha, options.bake_budget);
-        let baked: Blas<W> = build::blas(&parts.baked, options.quality);
+        let baked: Blas<W> = build::baked(&parts.baked, options.quality);
         let deforming = parts.deforming.par_iter().map(|part| {
             Deforming::build(part, &scene.meshes[part.mesh as usize], options.updates, options.quality)
         });
@@ -143,7 +143,9 @@ impl<const W: usize> Levels<W> {
 
     /// All but the shapes; time, instruction set and width are left open.
     pub(crate) fn stats(&self) -> Stats {
-        let bytes = |tree: &Blas<W>| size_of_val(&tree.nodes[..]) + size_of_val(&tree.blocks[..]);
+        let bytes = |tree: &Blas<W>| {
+            size_of_val(&tree.nodes[..]) + size_of_val(&tree.blocks[..]) + tree.names.bytes()
+        };
         let kept = self.deforming.iter().flat_map(Deforming::others).map(bytes).sum::<usize>();
         Stats {
             triangles: self.in_use().map(|tree| tree.triangles).sum(),

@@ -123,7 +123,9 @@ impl Shapes {
                     continue;
                 }
                 let shape = &self.shapes[placed.blas as usize];
-                let Some(t) = shape.intersect(origin, direction, best.t) else { continue };
+                // Not up to the best hit so far: a field's surface is found in cells, and where the last one is cut off
+                // shows in the last bits.
+                let Some(t) = shape.intersect(origin, direction, ray.t_max) else { continue };
                 let t = t.max(near);
                 let closer = t < best.t || (t == best.t && placed.instance < best.instance);
                 if closer && alpha.accepts(placed.instance, 0, 0.0, 0.0, ray.seed) {

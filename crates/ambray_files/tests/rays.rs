@@ -172,6 +172,9 @@ fn agreement_counts_what_differs() {
         ours.agreement(&theirs, RayKind::Closest).unwrap(),
         theirs.agreement(&ours, RayKind::Closest).unwrap()
     );
+    // A hit without a distance agrees with none.
+    let nowhere = hits(&[f32::NEG_INFINITY, f32::NAN, 9.0, 4.0, 9.0, 0.0], &[0, 1, none, 3, none, 5]);
+    assert_eq!(ours.agreement(&nowhere, RayKind::Closest).unwrap().far, 2);
     // Distances of any hit say nothing.
     let any = ours.agreement(&theirs, RayKind::Any).unwrap();
     assert_eq!((any.differing, any.far, any.largest_difference), (2, 0, 0.0));

@@ -171,41 +171,73 @@ impl Chords {
     fn make_rays(&mut self, params: &GatherParams<'_>, points: &[ShadedPoint], samples: &Samples) {
         self.chords.clear();
         self.rays.clear();
-        let spp = params.samples.spp() as usize;
         for run in &samples.runs {
             self.find_missed(params, samples, run);
             let most = self.starts.windows(2).map(|w| w[1] - w[0]).max().unwrap_or(0);
-            let mut emit = |q: usize, partner: &dyn Fn(usize) -> Option<usize>| {
-                for (i, point) in points[run.range()].iter().enumerate() {
-                    let missed = &self.missed[self.starts[i]..self.starts[i + 1]];
-                    let Some(partner) = partner(missed.len()) else { continue };
-                    let joins = [missed[q], missed[partner]];
-                    let ends = joins.map(|j| end(params, point, &samples.get(run.slot(i, j as usize))));
-                    let length = ends[0].distance(ends[1]);
-                    if length > 0.0 {
-                        let direction = (ends[1] - ends[0]) / length;
-                        let seed = point.key.ray_seed((spp + q * spp + partner) as u32);
-                        self.rays.push(Ray { origin: ends[0], t_max: CHORD_END * length, direction, seed });
-                        let point = (run.first + i) as u32;
-                        let joins = joins.map(|j| j as u16);
-                        self.chords.push(Chord { point, joins, length, blocked: 0.0, weight: 0.0 });
-                    }
-                }
-            };
+            let run = ChordRun { params, points, samples, run };
             match params.thin {
+                Thin::Paper if params.samples.spp() <= u64::BITS => self.pair_by_samples(&run),
                 Thin::Paper => {
                     for q in 0..most {
                         for partner in q + 1..most {
-                            emit(q, &|m| (partner < m).then_some(partner));
+                            self.pair(&run, |m| (partner < m).then_some([q, partner]));
                         }
                     }
                 }
                 Thin::Sheet | Thin::Off => {
                     for q in 0..most / 2 {
-                        emit(q, &|m| (q < m / 2).then_some(q + m / 2));
+                        self.pair(&run, |m| (q < m / 2).then_some([q, q + m / 2]));
                     }
                 }
             }
+        }
+    }
+
+    /// All pairs, those of the same two samples together: the points of a run share their samples, so these chords are
+    /// parallel where the surface is flat. Pairs of the same ranks among the missed rays would be so only where the same
+    /// rays are missed. The order of one point's chords is the same.
+    fn pair_by_samples(&mut self, run: &ChordRun<'_>) {
+        let missed_of = |i: usize| self.missed[self.starts[i]..self.starts[i + 1]].iter();
+        let sets: Vec<u64> =
+            run.run.range().enumerate().map(|(i, _)| missed_of(i).fold(0, |set, &j| set | 1 << j)).collect();
+        let missed = sets.iter().fold(0, |all, set| all | set);
+        for (a, b) in bits(missed).flat_map(|a| bits(missed & (!1 << a)).map(move |b| (a, b))) {
+            let pair = 1 << a | 1 << b;
+            for (i, &set) in sets.iter().enumerate().filter(|(_, set)| *set & pair == pair) {
+                let rank = |j: u32| (set & ((1 << j) - 1)).count_ones() as usize;
+                self.join(run, i, [rank(a), rank(b)]);
+            }
+        }
+    }
+
+    /// For each point a chord between two of its missed rays, which `ranks` chooses by their number.
+    fn pair(&mut self, run: &ChordRun<'_>, ranks: impl Fn(usize) -> Option<[usize; 2]>) {
+        for i in 0..run.run.points {
+            if let Some(ranks) = ranks(self.starts[i + 1] - self.starts[i]) {
+                self.join(run, i, ranks);
+            }
+        }
+    }
+
+    /// A chord of point `i` of a run between the ends of two of its missed rays.
+    fn join(
+        &mut self,
+        ChordRun { params, points, samples, run }: &ChordRun<'_>,
+        i: usize,
+        ranks: [usize; 2],
+    ) {
+        let point = &points[run.first + i];
+        let joins = ranks.map(|rank| self.missed[self.starts[i] + rank]);
+        let ends = joins.map(|j| end(params, point, &samples.get(run.slot(i, j as usize))));
+        let length = ends[0].distance(ends[1]);
+        if length > 0.0 {
+            let direction = (ends[1] - ends[0]) / length;
+            let spp = params.samples.spp() as usize;
+            let seed = point.key.ray_seed((spp + ranks[0] * spp + ranks[1]) as u32);
+            self.rays.push(Ray { origin: ends[0], t_max: CHORD_END * length, direction, seed });
+            let point = (run.first + i) as u32;
+            let joins = joins.map(|j| j as u16);
+            self.chords.push(Chord { point, joins, length, blocked: 0.0, weight: 0.0 });
         }
     }
 
@@ -226,6 +258,23 @@ impl Chords {
             self.starts.push(self.missed.len());
         }
     }
+}
+
+/// A run of points whose chords are made.
+struct ChordRun<'a> {
+    params: &'a GatherParams<'a>,
+    points: &'a [ShadedPoint],
+    samples: &'a Samples,
+    run: &'a Run,
+}
+
+/// Indices of the bits of `set`, lowest first.
+fn bits(mut set: u64) -> impl Iterator<Item = u32> {
+    std::iter::from_fn(move || {
+        let lowest = (set != 0).then(|| set.trailing_zeros())?;
+        set &= set - 1;
+        Some(lowest)
+    })
 }
 
 /// Whether the visibility of chords is all that is asked for: any hit will do.

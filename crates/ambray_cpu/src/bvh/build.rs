@@ -6,7 +6,8 @@ use rayon::prelude::*;
 
 use super::binary::{Aabb, Binary};
 use super::collapse::{self, Costs};
-use super::layout::{Blas, Block, Bounds, Child, FAT, Placed, Tlas};
+use super::layout::{Blas, Block, Bounds, Child, FAT, Number, Placed, Tlas};
+use super::names::Names;
 use super::{ploc, reinsert};
 use crate::Quality;
 
@@ -75,10 +76,24 @@ fn binary(boxes: Vec<Aabb>, quality: Quality) -> Binary {
     tree
 }
 
-/// Builds the tree of `triangles`, all of which must be hittable.
+/// Builds the tree of the triangles of a mesh, all of which must be hittable.
 pub(crate) fn blas<const W: usize>(triangles: &[Triangle], quality: Quality) -> Blas<W> {
+    numbered(triangles, quality, |place| triangles[place as usize].triangle)
+}
+
+/// Builds the tree of triangles of several instances, all of which must be hittable.
+pub(crate) fn baked<const W: usize>(triangles: &[Triangle], quality: Quality) -> Blas<W> {
+    Blas { names: Names::of(triangles), ..numbered(triangles, quality, |place| place) }
+}
+
+/// Builds the tree of `triangles`; `number` is told their places among these.
+fn numbered<const W: usize>(
+    triangles: &[Triangle],
+    quality: Quality,
+    number: impl Fn(u32) -> u32 + Sync,
+) -> Blas<W> {
     let boxes = triangles.par_iter().with_min_len(GRAIN).map(|t| Aabb::of_points(&t.corners)).collect();
-    wide(&binary(boxes, quality), triangles.len(), |primitives| block(triangles, primitives))
+    wide(&binary(boxes, quality), triangles.len(), |primitives| block(triangles, primitives, &number))
 }
 
 /// Builds the tree of all triangles of a mesh that deforms, for the vertices that `mesh` has now. Its leaf blocks have no
@@ -98,9 +113,9 @@ pub(crate) fn deforming<const W: usize>(mesh: &Mesh, masked: bool, quality: Qual
     }
     wide(&tree, mesh.triangles.len(), |primitives| {
         let mut block = Block::EMPTY;
-        block.triangles[..primitives.len()].copy_from_slice(primitives);
-        block.count = primitives.len() as u32;
-        block.masked = if masked { u32::MAX >> (32 - block.count) } else { 0 };
+        for (number, &triangle) in block.triangles.iter_mut().zip(primitives) {
+            *number = Number::new(triangle, masked);
+        }
         block
     })
 }
@@ -108,14 +123,19 @@ pub(crate) fn deforming<const W: usize>(mesh: &Mesh, masked: bool, quality: Qual
 /// Collapses `tree` over some triangles, which `block` puts into leaf blocks.
 fn wide<const W: usize>(tree: &Binary, triangles: usize, block: impl Fn(&[u32]) -> Block + Sync) -> Blas<W> {
     let wide = collapse::collapse::<W>(tree, Costs::TRIANGLES, FAT as u32);
-    let blocks = wide
-        .leaves
-        .par_iter()
-        .with_min_len(64)
-        .map_init(Default::default, |scratch, &leaf| block(tree.gather(leaf as usize, scratch)));
+    let blocks = wide.leaves.par_iter().with_min_len(64).map_init(Default::default, |scratch, &leaf| {
+        let primitives = tree.gather(leaf as usize, scratch);
+        (block(primitives), primitives.len() as u8)
+    });
+    let (blocks, counts): (Vec<_>, Vec<u8>) = blocks.unzip();
+    let mut nodes = wide.nodes;
+    for child in nodes.iter_mut().flat_map(|node| &mut node.children).filter(|child| child.is_leaf()) {
+        *child = Child::block(child.index(), usize::from(counts[child.index()]));
+    }
     Blas {
-        blocks: blocks.collect(),
-        nodes: wide.nodes,
+        blocks,
+        names: Names::default(),
+        nodes,
         bounds: tree.bounds.first().map_or(Bounds::EMPTY, |&root| root.into()),
         triangles,
         depth: wide.depth,
@@ -123,7 +143,7 @@ fn wide<const W: usize>(tree: &Binary, triangles: usize, block: impl Fn(&[u32]) 
     }
 }
 
-fn block(triangles: &[Triangle], primitives: &[u32]) -> Block {
+fn block(triangles: &[Triangle], primitives: &[u32], number: impl Fn(u32) -> u32) -> Block {
     let mut block = Block::EMPTY;
     for (lane, &primitive) in primitives.iter().enumerate() {
         let triangle = &triangles[primitive as usize];
@@ -132,11 +152,8 @@ fn block(triangles: &[Triangle], primitives: &[u32]) -> Block {
                 axis[lane] = value;
             }
         }
-        block.instances[lane] = triangle.instance;
-        block.triangles[lane] = triangle.triangle;
-        block.masked |= u32::from(triangle.masked) << lane;
+        block.triangles[lane] = Number::new(number(primitive), triangle.masked);
     }
-    block.count = primitives.len() as u32;
     block
 }
 

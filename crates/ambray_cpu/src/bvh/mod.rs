@@ -5,6 +5,7 @@ pub(crate) mod build;
 mod collapse;
 mod forest;
 pub(crate) mod layout;
+pub(crate) mod names;
 mod ploc;
 pub(crate) mod refit;
 mod reinsert;

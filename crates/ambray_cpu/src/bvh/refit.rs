@@ -29,7 +29,7 @@ pub(crate) fn refit<const W: usize>(tree: &mut Blas<W>, mesh: &Mesh) -> f64 {
         match step {
             Step::Part(part) => finished.push(fitted[part]),
             Step::Node(index) => {
-                let block = |block: usize| fit_block(&mut tree.blocks[block], mesh);
+                let block = |block: usize, count| fit_block(&mut tree.blocks[block], count, mesh);
                 close(&mut tree.nodes[index], &mut finished, block);
             }
         }
@@ -67,7 +67,9 @@ impl<const W: usize> Part<'_, W> {
         let Self { nodes, blocks, first_block } = self;
         let mut finished = Vec::new();
         for node in nodes.iter_mut().rev() {
-            close(node, &mut finished, |block| fit_block(&mut blocks[block - first_block], mesh));
+            close(node, &mut finished, |block, count| {
+                fit_block(&mut blocks[block - first_block], count, mesh)
+            });
         }
         finished.pop().expect("a subtree has a root")
     }
@@ -96,7 +98,7 @@ fn split<'a, const W: usize>(
         while !first.is_leaf() {
             first = mine[first.index() - index].children[0];
         }
-        let first_block = first.index();
+        let (first_block, _) = first.in_block();
         let my_blocks;
         (my_blocks, blocks) = blocks[first_block - passed_blocks..].split_at_mut(block_count as usize);
         passed_blocks = first_block + block_count as usize;
@@ -136,12 +138,13 @@ fn children<const W: usize>(node: &Node<W>) -> impl Iterator<Item = Child> + use
 fn close<const W: usize>(
     node: &mut Node<W>,
     finished: &mut Vec<Fitted>,
-    mut block: impl FnMut(usize) -> Fitted,
+    mut block: impl FnMut(usize, u32) -> Fitted,
 ) {
     let mut all = Fitted { bounds: Bounds::EMPTY, cost: 0.0 };
     for (slot, child) in children(node).enumerate() {
         let fitted = if child.is_leaf() {
-            block(child.index())
+            let (index, count) = child.in_block();
+            block(index, count)
         } else {
             finished.pop().expect("children are fitted before their parent")
         };
@@ -160,11 +163,11 @@ fn close<const W: usize>(
 ///
 /// Waiting for memory is most of it, so everything is fetched that can be before anything is done with it: first what the
 /// triangles are, then where their vertices are. The rest looks at several lanes at once.
-fn fit_block(block: &mut Block, mesh: &Mesh) -> Fitted {
-    let count = (block.count as usize).min(FAT);
+fn fit_block(block: &mut Block, count: u32, mesh: &Mesh) -> Fitted {
+    let count = (count as usize).min(FAT);
     let mut indices = [[0; 3]; FAT];
-    for (indices, &triangle) in indices.iter_mut().zip(&block.triangles[..count]) {
-        *indices = mesh.triangles[triangle as usize];
+    for (indices, number) in indices.iter_mut().zip(&block.triangles[..count]) {
+        *indices = mesh.triangles[number.index() as usize];
     }
     for (lane, indices) in indices[..count].iter().enumerate() {
         for (rows, &index) in block.corners.iter_mut().zip(indices) {

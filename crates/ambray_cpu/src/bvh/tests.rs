@@ -6,7 +6,7 @@ use glam::Vec3;
 use super::binary::{Aabb, Binary};
 use super::build::{self, Triangle};
 use super::collapse::{self, Costs};
-use super::layout::{Blas, Bounds, Child};
+use super::layout::{Blas, Bounds, Child, Number};
 use super::{ploc, reinsert};
 use crate::Quality;
 
@@ -186,12 +186,12 @@ fn validate_wide<const W: usize>(tree: &Blas<W>, triangles: &[Triangle]) {
     let mut pending = if tree.nodes.is_empty() { Vec::new() } else { vec![(Child::ROOT, tree.bounds)] };
     while let Some((child, bounds)) = pending.pop() {
         if child.is_leaf() {
-            assert_eq!(child.index(), next_block);
+            let (index, count) = child.in_block();
+            assert_eq!(index, next_block);
             next_block += 1;
-            let block = &tree.blocks[child.index()];
-            assert!((1..=W as u32).contains(&block.count));
-            for lane in 0..block.count as usize {
-                let index = block.triangles[lane] as usize;
+            let block = &tree.blocks[index];
+            for lane in 0..count as usize {
+                let index = block.triangles[lane].index() as usize;
                 assert!(!std::mem::replace(&mut seen[index], true));
                 for (k, corner) in triangles[index].corners.iter().enumerate() {
                     assert_eq!(block.corners[k].map(|axis| axis[lane]), corner.to_array());
@@ -235,7 +235,7 @@ fn fingerprint(tree: &Blas<8>) -> Vec<u32> {
         let planes = node.planes.as_flattened().iter().map(|plane| plane.to_bits());
         planes.chain(node.children.iter().map(|child| child.0)).collect::<Vec<_>>()
     });
-    nodes.chain(tree.blocks.iter().flat_map(|block| block.triangles)).collect()
+    nodes.chain(tree.blocks.iter().flat_map(|block| block.triangles.map(Number::index))).collect()
 }
 
 #[test]

@@ -61,6 +61,10 @@ impl<const W: usize> Lanes<W> for Array<W> {
         self.zip(other, |a, b| a / b)
     }
     #[inline(always)]
+    fn mul_sub(self, factor: Self, less: Self) -> Self {
+        self.mul(factor).sub(less)
+    }
+    #[inline(always)]
     fn min(self, other: Self) -> Self {
         self.zip(other, |a, b| if a < b { a } else { b })
     }
@@ -125,6 +129,7 @@ impl Rays for Array<16> {
 #[cfg(all(test, target_arch = "x86_64"))]
 mod tests {
     use super::super::sse2::{Sse2x8, Sse2x16};
+    use super::super::x86::{Avx2x8, Avx2x16, Avx512x16};
     use super::*;
 
     /// What comes out of every operation on `a` and `b`, as bits.
@@ -163,20 +168,27 @@ mod tests {
         })
     }
 
-    #[test]
-    fn the_vectors_of_every_processor_do_what_arrays_do() {
+    fn compare<L: Lanes<8>, R: Lanes<16>>() {
         for seed in 0..2_000 {
             let mask = ambray_core::sampling::pcg(seed);
             let (a, b) = (numbers::<8>(seed), numbers::<8>(seed + 10_000));
-            assert_eq!(
-                outcomes::<8, Sse2x8>(&a, &b, mask & 0xff),
-                outcomes::<8, Array<8>>(&a, &b, mask & 0xff)
-            );
+            assert_eq!(outcomes::<8, L>(&a, &b, mask & 0xff), outcomes::<8, Array<8>>(&a, &b, mask & 0xff));
             let (a, b) = (numbers::<16>(seed), numbers::<16>(seed + 10_000));
             assert_eq!(
-                outcomes::<16, Sse2x16>(&a, &b, mask & 0xffff),
+                outcomes::<16, R>(&a, &b, mask & 0xffff),
                 outcomes::<16, Array<16>>(&a, &b, mask & 0xffff)
             );
+        }
+    }
+
+    #[test]
+    fn the_vectors_of_every_processor_do_what_arrays_do() {
+        compare::<Sse2x8, Sse2x16>();
+        if crate::Isa::Avx2.is_available() {
+            compare::<Avx2x8, Avx2x16>();
+        }
+        if crate::Isa::Avx512.is_available() {
+            compare::<Avx2x8, Avx512x16>();
         }
     }
 }

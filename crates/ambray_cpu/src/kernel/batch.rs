@@ -7,10 +7,10 @@ use ambray_core::trace::{Hit, Ray};
 use super::bundle::{Bundle, LANES};
 use super::lanes::{Lanes, Rays};
 use super::loose::Loose;
-use super::{Query, Scene, cut, packet, single};
+use super::{Query, Scene, cut, packet, single, triangle};
 
 /// Rays of a group that is worth a packet of its own; those of others look for company in the whole batch.
-const TOGETHER: u32 = 12;
+const TOGETHER: u32 = 8;
 
 /// Answers `rays`.
 #[inline(always)]
@@ -19,13 +19,19 @@ pub(super) fn answer<const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
     rays: &[Ray],
     answers: &mut [Q::Answer],
 ) {
-    let cut = scene.baked.nodes.first().map(|_| cut::root(&scene.baked.nodes, rays));
+    let cut = scene.baked.nodes.first().map(|_| cut::root::<W, R>(&scene.baked.nodes, rays));
     let scene = &Scene { entry: cut.as_ref(), ..*scene };
     let mut single = vec![MaybeUninit::uninit(); scene.stack];
     if !scene.packets {
-        for (ray, answer) in rays.iter().zip(answers) {
-            let hit = single::trace::<W, L, Q>(scene, ray, &mut single);
-            *answer = Q::answer(hit.is_hit(), hit);
+        for (rays, answers) in rays.chunks(LANES).zip(answers.chunks_mut(LANES)) {
+            let bundle = Bundle::of::<R>(rays);
+            for (lane, (ray, answer)) in rays.iter().zip(answers).enumerate() {
+                let mut hit = Hit::MISS;
+                if bundle.able >> lane & 1 != 0 {
+                    hit = single::trace::<W, L, Q>(scene, ray, &bundle.ray(lane), &mut single);
+                }
+                *answer = Q::answer(hit.is_hit(), || triangle::named(&scene.baked.names, hit));
+            }
         }
         return;
     }
@@ -50,7 +56,7 @@ fn in_order<const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
         let (rays, answers) = (&rays[first..][..count], &mut answers[first..][..count]);
         for (lane, answer) in answers.iter_mut().enumerate() {
             if bundle.able >> lane & 1 == 0 {
-                *answer = Q::answer(false, Hit::MISS);
+                *answer = Q::answer(false, || Hit::MISS);
             }
         }
         let mut waiting = bundle.able;
@@ -65,7 +71,7 @@ fn in_order<const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
             while lanes != 0 {
                 let lane = lanes.trailing_zeros() as usize % LANES;
                 lanes &= lanes - 1;
-                loose.push(first + lane, rays[lane].direction);
+                loose.push(first + lane, &bundle, lane);
             }
         }
         first += count;
@@ -89,7 +95,7 @@ fn by_direction<const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
         }
         let some = &some[..together.len()];
         let bundle = Bundle::of::<R>(some);
-        let mut found = [Q::answer(false, Hit::MISS); LANES];
+        let mut found = [Q::answer(false, || Hit::MISS); LANES];
         let mut waiting = bundle.able;
         while waiting != 0 {
             let group = bundle.group(waiting);

@@ -1,11 +1,10 @@
-//! From rays in the order of the caller to packets of rays that agree in direction.
+//! Sixteen rays as vectors see them, and which of them agree in direction.
 
-use ambray_core::trace::{Hit, Ray};
+use ambray_core::trace::Ray;
 
-use super::Query;
-use super::best::Best;
 use super::lanes::Rays;
-use super::ray::{self, Prepared};
+use super::ray::{self, Axis, OneRay, Order, Prepared};
+use super::slab::{self, Slab};
 
 /// Rays of a packet.
 pub(crate) const LANES: usize = 16;
@@ -25,15 +24,23 @@ impl Numbers {
     pub(crate) const ZERO: Self = Self([0.0; LANES]);
 
     #[inline(always)]
+    pub(crate) fn of<R: Rays>(lanes: R) -> Self {
+        Self(lanes.to_array())
+    }
+
+    #[inline(always)]
     pub(crate) fn load<R: Rays>(&self) -> R {
         R::load(&self.0)
     }
 }
 
-/// Up to sixteen rays as structure of arrays.
+/// Up to sixteen rays as structure of arrays, each as [`Prepared`] has it, bit for bit.
 pub(crate) struct Bundle {
-    origin: [Numbers; 3],
-    direction: [Numbers; 3],
+    pub(crate) origin: [Numbers; 3],
+    pub(crate) reciprocal: [Numbers; 3],
+    pub(crate) enter: [Numbers; 3],
+    pub(crate) leave: [Numbers; 3],
+    pub(crate) shear: [Numbers; 3],
     pub(crate) t_max: Numbers,
     /// Lanes of rays that can hit anything.
     pub(crate) able: u32,
@@ -71,46 +78,50 @@ impl Bundle {
     /// All of `rays`, no more than sixteen.
     #[inline(always)]
     pub(crate) fn of<R: Rays>(rays: &[Ray]) -> Self {
-        let mut bundle = Self {
-            origin: [Numbers::ZERO; 3],
-            direction: [Numbers::ZERO; 3],
-            t_max: Numbers::ZERO,
-            able: 0,
-            down: [0; 3],
-            longest: [0; 2],
-        };
         let mut some = [NOTHING; LANES];
         let [ox, oy, oz, t_max, dx, dy, dz, _] = R::transposed(rays.first_chunk().unwrap_or_else(|| {
             some[..rays.len()].copy_from_slice(rays);
             &some
         }));
-        bundle.origin = [Numbers(ox.to_array()), Numbers(oy.to_array()), Numbers(oz.to_array())];
-        bundle.direction = [Numbers(dx.to_array()), Numbers(dy.to_array()), Numbers(dz.to_array())];
-        bundle.t_max = Numbers(t_max.to_array());
-        bundle.classify::<R>();
-        bundle.able &= ((1_u64 << rays.len()) - 1) as u32;
-        bundle
-    }
-
-    #[inline(always)]
-    fn classify<R: Rays>(&mut self) {
-        let zero = R::splat(0.0);
+        let (zero, one) = (R::splat(0.0), R::splat(1.0));
         let (largest, smallest) = (R::splat(f32::MAX), R::splat(f32::MIN));
-        let mut able = zero.lt(self.t_max.load());
+        // So that there is no −0, which looks the other way.
+        let (dx, dy, dz) = (dx.add(zero), dy.add(zero), dz.add(zero));
+        let mut able = zero.lt(t_max);
         let mut directed = 0;
-        for (axis, down) in self.down.iter_mut().enumerate() {
-            let origin: R = self.origin[axis].load();
-            let direction: R = self.direction[axis].load();
+        let mut down = [0; 3];
+        let [mut reciprocal, mut enter, mut leave] = [[Numbers::ZERO; 3]; 3];
+        for (axis, (origin, direction)) in [(ox, dx), (oy, dy), (oz, dz)].into_iter().enumerate() {
             able &= origin.le(largest) & smallest.le(origin) & direction.le(largest) & smallest.le(direction);
             directed |= direction.lt(zero) | zero.lt(direction);
-            *down = direction.signs();
+            down[axis] = direction.signs();
+            let far = origin.max(zero.sub(origin)).max(one);
+            let steepest = R::splat(ray::LARGEST_RECIPROCAL).div(far);
+            let across = one.div(direction).min(steepest).max(zero.sub(steepest));
+            let at = origin.mul(across);
+            let pad = at.max(zero.sub(at)).mul(R::splat(slab::PAD)).add(R::splat(f32::MIN_POSITIVE));
+            reciprocal[axis] = Numbers::of(across);
+            enter[axis] = Numbers::of(at.add(pad));
+            leave[axis] = Numbers::of(at.sub(pad));
         }
-        self.able = able & directed;
-        let (x, y, z): (R, R, R) =
-            (self.direction[0].load(), self.direction[1].load(), self.direction[2].load());
-        let (x, y, z) = (x.max(zero.sub(x)), y.max(zero.sub(y)), z.max(zero.sub(z)));
+        let (x, y, z) = (dx.max(zero.sub(dx)), dy.max(zero.sub(dy)), dz.max(zero.sub(dz)));
         let along_x = y.le(x) & z.le(x);
-        self.longest = [along_x, z.le(y) & !along_x];
+        let along_y = z.le(y) & !along_x;
+        // As [`Axis::last`] has it.
+        let x = R::select(along_x, dy, R::select(along_y, dz, dx));
+        let y = R::select(along_x, dz, R::select(along_y, dx, dy));
+        let z = R::select(along_x, dx, R::select(along_y, dy, dz));
+        Self {
+            origin: [Numbers::of(ox), Numbers::of(oy), Numbers::of(oz)],
+            reciprocal,
+            enter,
+            leave,
+            shear: [Numbers::of(x.div(z)), Numbers::of(y.div(z)), Numbers::of(one.div(z))],
+            t_max: Numbers::of(t_max),
+            able: able & directed & ((1_u64 << rays.len()) - 1) as u32,
+            down,
+            longest: [along_x, along_y],
+        }
     }
 
     /// Those of the rays `waiting` that agree with the first of them in the order of planes and in the longest axis.
@@ -124,124 +135,155 @@ impl Bundle {
         waiting & !(x | y | z | along_x | along_y)
     }
 
+    /// In which order the ray meets planes, and its axes with the longest one last.
+    #[inline(always)]
+    pub(crate) fn turn(&self, lane: usize) -> (Order, [Axis; 3]) {
+        let is = |lanes: u32| lanes >> lane & 1 != 0;
+        let longest = if is(self.longest[0]) {
+            Axis::X
+        } else if is(self.longest[1]) {
+            Axis::Y
+        } else {
+            Axis::Z
+        };
+        (Order { down: self.down.map(is) }, longest.last())
+    }
+
+    /// The ray of a lane that is able.
+    #[inline(always)]
+    pub(crate) fn ray(&self, lane: usize) -> Prepared {
+        let (order, axes) = self.turn(lane);
+        Lane { bundle: self, lane, order, axes }.prepared()
+    }
+
     /// The packet of the rays of `group`.
     #[inline(always)]
-    pub(crate) fn packet<R: Rays>(&self, group: u32) -> Packet {
-        let first = group.trailing_zeros();
-        let is = |lanes: u32| lanes >> first & 1 != 0;
-        let longest = if is(self.longest[0]) {
-            0
-        } else if is(self.longest[1]) {
-            1
-        } else {
-            2
-        };
-        let axes = ray::AXES[longest];
-        let (near, far) = ray::planes(self.down.map(is));
+    pub(crate) fn packet<R: Rays>(&self, group: u32) -> Packet<'_> {
+        let first = group.trailing_zeros() as usize % LANES;
+        let (order, axes) = self.turn(first);
+        let limit: R = R::select(group, self.t_max.load(), R::splat(-1.0));
         let mut packet = Packet {
-            origin: [Numbers::ZERO; 3],
-            reciprocal: [Numbers::ZERO; 3],
-            shear: [Numbers::ZERO; 3],
-            limit: Numbers(R::select(group, self.t_max.load(), R::splat(-1.0)).to_array()),
-            origins: [[0.0; 2]; 3],
-            reciprocals: [[0.0; 2]; 3],
+            bundle: self,
+            limit: Numbers::of(limit),
+            enter: [[0.0; 2]; 3],
+            leave: [[0.0; 2]; 3],
             axes,
-            near,
-            far,
-            largest_limit: 0.0,
-            hits: 0,
+            order,
+            largest_limit: limit.largest(),
+            changes: 0,
         };
-        packet.largest_limit = packet.limit.load::<R>().largest();
-        // Interleaved rays are parallel on flat surfaces.
-        let mut same = group;
         for axis in 0..3 {
-            let direction: R = self.direction[axis].load();
-            let of_first = R::splat(self.direction[axis].0[first as usize % LANES]);
-            same &= direction.le(of_first) & of_first.le(direction);
-        }
-        let is_parallel = same == group;
-        let one = R::splat(1.0);
-        let longest = ray::LARGEST_RECIPROCAL;
-        for axis in 0..3 {
-            let lane = first as usize % LANES;
-            let origin = R::select(group, self.origin[axis].load(), R::splat(self.origin[axis].0[lane]));
-            packet.origin[axis] = Numbers(origin.to_array());
-            let (low, high) = (origin.smallest(), origin.largest());
-            let is_down = is(self.down[axis]);
-            packet.origins[axis] = if is_down { [low, high] } else { [high, low] };
-            let direction =
-                R::select(group, self.direction[axis].load(), R::splat(self.direction[axis].0[lane]));
-            let reciprocal = one.div(direction).min(R::splat(longest)).max(R::splat(-longest));
-            packet.reciprocal[axis] = Numbers(reciprocal.to_array());
-            let (low, high) = if is_parallel {
-                let any = packet.reciprocal[axis].0[0];
-                (any, any)
-            } else {
-                (reciprocal.smallest(), reciprocal.largest())
+            let (origin, reciprocal) = (&self.origin[axis], &self.reciprocal[axis]);
+            // Lanes of other groups are as the first one.
+            let origin: R = R::select(group, origin.load(), R::splat(origin.0[first]));
+            let reciprocal: R = R::select(group, reciprocal.load(), R::splat(reciprocal.0[first]));
+            let origins = [origin.smallest(), origin.largest()];
+            // Interleaved rays are parallel on flat surfaces.
+            let parallel = self.reciprocal[axis].0[first];
+            let all = R::splat(parallel);
+            let is_parallel = reciprocal.le(all) & all.le(reciprocal) == u32::from(u16::MAX);
+            let reciprocals = match is_parallel {
+                true => [parallel; 2],
+                false => [reciprocal.smallest(), reciprocal.largest()],
             };
-            packet.reciprocals[axis] = if is_down { [high, low] } else { [low, high] };
+            let ([early, late], [small, large]) = match order.down[axis] {
+                false => (origins, reciprocals),
+                true => ([origins[1], origins[0]], [reciprocals[1], reciprocals[0]]),
+            };
+            packet.enter[axis] = [small, slab::padded(late, small).0];
+            packet.leave[axis] = [large, slab::padded(early, large).1];
         }
-        let [x, y, z] = axes;
-        let (x, y): (R, R) = (self.direction[x].load(), self.direction[y].load());
-        let z: R = self.direction[z].load();
-        packet.shear[0] = Numbers(x.div(z).to_array());
-        packet.shear[1] = Numbers(y.div(z).to_array());
-        // Of the longest axis, so it is not cut off.
-        packet.shear[2] = packet.reciprocal[axes[2]];
         packet
     }
 }
 
 /// Rays that agree in the order of planes and in the longest axis.
-pub(crate) struct Packet {
-    pub(crate) origin: [Numbers; 3],
-    pub(crate) reciprocal: [Numbers; 3],
-    pub(crate) shear: [Numbers; 3],
+pub(crate) struct Packet<'a> {
+    pub(crate) bundle: &'a Bundle,
     /// t of the best hits so far, or ends of the rays; negative for rays that are absent.
     pub(crate) limit: Numbers,
-    /// For each axis the origins that are farthest and least far along the rays.
-    pub(crate) origins: [[f32; 2]; 3],
-    /// For each axis the reciprocals of the smallest and the largest absolute value.
-    pub(crate) reciprocals: [[f32; 2]; 3],
+    /// For each axis the factor and the number to subtract with which a near plane is no farther than for any ray.
+    pub(crate) enter: [[f32; 2]; 3],
+    /// For each axis the factor and the number to subtract with which a far plane is no nearer than for any ray.
+    pub(crate) leave: [[f32; 2]; 3],
+    /// As in [`Prepared`].
+    pub(crate) axes: [Axis; 3],
+    pub(crate) order: Order,
     /// Largest of the limits at the start.
     pub(crate) largest_limit: f32,
-    /// How many hits have shortened rays, modulo 2¹⁶. A box is tested too often or, since the walk keeps fewer boxes than that,
-    /// never not at all for it.
-    pub(crate) hits: u16,
-    /// As in [`Prepared`].
-    pub(crate) axes: [usize; 3],
-    pub(crate) near: [usize; 3],
-    pub(crate) far: [usize; 3],
+    /// How often limits have changed, modulo 2¹⁶; if two moments are taken for one, boxes are visited that need not be.
+    pub(crate) changes: u16,
 }
 
-impl Packet {
+impl Packet<'_> {
     /// The `lanes` have hits at `t`.
     #[inline(always)]
     pub(crate) fn shorten<R: Rays>(&mut self, lanes: u32, t: R) {
         t.put(lanes, &mut self.limit.0);
-        self.hits = self.hits.wrapping_add(1);
+        self.changes = self.changes.wrapping_add(1);
     }
 
-    /// A ray that went alone comes back with `hit`.
+    /// The best hit of one ray is at `t`, or it has none still and ends there.
     #[inline(always)]
-    pub(crate) fn settle<Q: Query>(&mut self, lane: usize, hit: &Hit, best: &mut Best) {
-        self.limit.0[lane % LANES] = hit.t;
-        self.hits = self.hits.wrapping_add(1);
-        best.replace(lane, hit);
+    pub(crate) fn shorten_one(&mut self, lane: usize, t: f32) {
+        let limit = &mut self.limit.0[lane % LANES];
+        self.changes = self.changes.wrapping_add(u16::from(t < *limit));
+        *limit = t;
     }
 
-    /// One of the rays, bit for bit what [`Prepared::new`] makes of it.
     #[inline(always)]
-    pub(crate) fn ray(&self, lane: usize) -> Prepared {
-        let lane = lane % LANES;
-        let of = |numbers: &[Numbers; 3]| [numbers[0].0[lane], numbers[1].0[lane], numbers[2].0[lane]];
-        Prepared {
-            origin: of(&self.origin),
-            reciprocal: of(&self.reciprocal),
-            axes: self.axes,
-            shear: of(&self.shear),
-            near: self.near,
-            far: self.far,
+    pub(crate) fn ray(&self, lane: usize) -> Lane<'_> {
+        Lane { bundle: self.bundle, lane: lane % LANES, order: self.order, axes: self.axes }
+    }
+}
+
+/// One ray of a bundle.
+pub(crate) struct Lane<'a> {
+    bundle: &'a Bundle,
+    lane: usize,
+    order: Order,
+    axes: [Axis; 3],
+}
+
+impl Lane<'_> {
+    /// On its own.
+    #[inline(always)]
+    pub(crate) fn prepared(&self) -> Prepared {
+        let mut slab = [Slab::NONE; 3];
+        for (axis, slab) in slab.iter_mut().enumerate() {
+            slab.reciprocal = self.reciprocal(axis);
+            slab.enter = self.bundle.enter[axis].0[self.lane % LANES];
+            slab.leave = self.bundle.leave[axis].0[self.lane % LANES];
         }
+        Prepared {
+            origin: [self.origin(0), self.origin(1), self.origin(2)],
+            slab,
+            axes: self.axes,
+            shear: [self.shear(0), self.shear(1), self.shear(2)],
+            order: self.order,
+        }
+    }
+}
+
+impl OneRay for Lane<'_> {
+    #[inline(always)]
+    fn origin(&self, axis: usize) -> f32 {
+        self.bundle.origin[axis].0[self.lane % LANES]
+    }
+    #[inline(always)]
+    fn reciprocal(&self, axis: usize) -> f32 {
+        self.bundle.reciprocal[axis].0[self.lane % LANES]
+    }
+    #[inline(always)]
+    fn shear(&self, axis: usize) -> f32 {
+        self.bundle.shear[axis].0[self.lane % LANES]
+    }
+    #[inline(always)]
+    fn axes(&self) -> [Axis; 3] {
+        self.axes
+    }
+    #[inline(always)]
+    fn order(&self) -> Order {
+        self.order
     }
 }

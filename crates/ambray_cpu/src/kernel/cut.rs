@@ -6,7 +6,9 @@
 //! boxes are those of the tree, so no answer changes.
 
 use ambray_core::trace::Ray;
-use glam::{Vec3A, Vec4};
+use glam::Vec3A;
+
+use super::lanes::Rays;
 
 use crate::bvh::layout::{Bounds, Child, Node};
 
@@ -22,17 +24,24 @@ const MOST_OPENED: usize = 32;
 /// Rays that are not finite, and so hit nothing, do not count: where a new value is not a number, minimum and maximum
 /// return the old one.
 #[inline(always)]
-fn reach(rays: &[Ray]) -> Option<Bounds> {
-    let (mut low, mut high) = (Vec4::INFINITY, Vec4::NEG_INFINITY);
-    let mut longest = 0.0_f32;
-    for ray in rays {
-        let origin = ray.origin.extend(0.0);
-        let end = origin + ray.direction.extend(0.0) * ray.t_max;
-        low = end.min(origin.min(low));
-        high = end.max(origin.max(high));
-        longest = longest.max(ray.t_max);
+fn reach<R: Rays>(rays: &[Ray]) -> Option<Bounds> {
+    let mut lows = [R::splat(f32::INFINITY); 3];
+    let mut highs = [R::splat(f32::NEG_INFINITY); 3];
+    let mut longest = R::splat(0.0);
+    // The last sixteen are seen twice rather than fewer at a time.
+    let (sixteens, _) = rays.as_chunks();
+    for sixteen in sixteens.iter().chain(rays.last_chunk()) {
+        let [ox, oy, oz, t_max, dx, dy, dz, _] = R::transposed(sixteen);
+        for (axis, (origin, direction)) in [(ox, dx), (oy, dy), (oz, dz)].into_iter().enumerate() {
+            let end = origin.add(direction.mul(t_max));
+            lows[axis] = end.min(origin.min(lows[axis]));
+            highs[axis] = end.max(origin.max(highs[axis]));
+        }
+        longest = t_max.max(longest);
     }
-    let (low, high) = (low.truncate(), high.truncate());
+    let low = glam::Vec3::new(lows[0].smallest(), lows[1].smallest(), lows[2].smallest());
+    let high = glam::Vec3::new(highs[0].largest(), highs[1].largest(), highs[2].largest());
+    let longest = longest.largest();
     let pad = (low.abs().max(high.abs()).max_element() + (high - low).max_element()) * (1.0 / 65_536.0);
     let is_bounded = longest.is_finite() && low.is_finite() && high.is_finite() && pad.is_finite();
     is_bounded.then(|| Bounds { lo: low - pad, hi: high + pad })
@@ -49,9 +58,9 @@ struct Part {
 
 /// The node that takes the place of the root of the tree with `nodes`, at least one, for `rays`.
 #[inline(always)]
-pub(crate) fn root<const W: usize>(nodes: &[Node<W>], rays: &[Ray]) -> Node<W> {
+pub(crate) fn root<const W: usize, R: Rays>(nodes: &[Node<W>], rays: &[Ray]) -> Node<W> {
     let all = &nodes[0];
-    let Some(reach) = Some(rays).filter(|rays| rays.len() >= WORTHWHILE).and_then(reach) else {
+    let Some(reach) = Some(rays).filter(|rays| rays.len() >= WORTHWHILE).and_then(reach::<R>) else {
         return all.clone();
     };
     let mut parts = [Part { child: Child::ROOT, bounds: Bounds::EMPTY, weight: 0.0 }; W];

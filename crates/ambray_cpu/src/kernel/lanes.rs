@@ -1,7 +1,7 @@
 //! Vectors of `f32` as the kernels see them, so that each kernel is written once.
 //!
-//! Every operation is one IEEE 754 operation a lane, with the NaN rule of x86 for minima and maxima, so all
-//! implementations return the same bits.
+//! Every operation but [`mul_sub`](Lanes::mul_sub) is one IEEE 754 operation a lane, with the NaN rule of x86 for minima and
+//! maxima, so all implementations return the same bits.
 
 use ambray_core::trace::Ray;
 
@@ -18,6 +18,8 @@ pub(crate) trait Lanes<const W: usize>: Copy {
     fn sub(self, other: Self) -> Self;
     fn mul(self, other: Self) -> Self;
     fn div(self, other: Self) -> Self;
+    /// `self * factor - less`, of which the product may be rounded or not.
+    fn mul_sub(self, factor: Self, less: Self) -> Self;
     /// `if self < other { self } else { other }`
     fn min(self, other: Self) -> Self;
     /// `if self > other { self } else { other }`

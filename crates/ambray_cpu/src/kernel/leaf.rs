@@ -2,26 +2,25 @@
 //! [`triangle`](super::triangle), lane by lane.
 
 use super::best::Best;
-use super::bundle::{LANES, Packet};
+use super::bundle::{Bundle, LANES, Packet};
 use super::lanes::Rays;
-use super::packet::meets;
 use super::triangle::{self, Plane};
-use super::{Query, Trunk};
+use super::{Query, Trunk, slab};
 use crate::bvh::layout::{Block, FAT};
 use ambray_core::trace::Ray;
 
-/// Lets the `live` rays see the triangles of `block`. Returns those that are answered.
+/// Lets the `live` rays see the `count` triangles of `block`. Returns those that are answered.
 #[inline(always)]
 pub(crate) fn visit<const W: usize, R: Rays, Q: Query>(
     trunk: &Trunk<'_, W>,
-    block: &Block,
-    packet: &mut Packet,
+    (block, count): (&Block, u32),
+    packet: &mut Packet<'_>,
     rays: &[Ray],
     live: u32,
     best: &mut Best,
 ) -> u32 {
     let mut answered = 0;
-    for slot in 0..block.count as usize {
+    for slot in 0..count as usize {
         answered |= triangle::<W, R, Q>(trunk, block, slot, packet, rays, live & !answered, best);
         if answered == live {
             break;
@@ -36,7 +35,7 @@ fn triangle<const W: usize, R: Rays, Q: Query>(
     trunk: &Trunk<'_, W>,
     block: &Block,
     slot: usize,
-    packet: &mut Packet,
+    packet: &mut Packet<'_>,
     rays: &[Ray],
     live: u32,
     best: &mut Best,
@@ -52,7 +51,7 @@ fn triangle<const W: usize, R: Rays, Q: Query>(
     if inside == 0 {
         return 0;
     }
-    let (met, near) = meets::<1, R>(&bounds(block, slot), 0, packet);
+    let (met, near) = meets::<R>(&triangle::planes(block, slot % FAT), packet);
     let inside = inside & met;
     if inside == 0 {
         return 0;
@@ -66,17 +65,19 @@ fn triangle<const W: usize, R: Rays, Q: Query>(
         return 0;
     }
     let t = t.max(near);
-    let (instance, triangle) =
-        (trunk.instance.unwrap_or(block.instances[slot % FAT]), block.triangles[slot % FAT]);
+    let (instance, number) = (trunk.instance, block.triangles[slot % FAT]);
+    let triangle = number.index();
     let mut closer = seen & t.lt(limit);
     let mut equal = seen & t.le(limit) & !closer & t.lt(R::splat(f32::INFINITY));
     while equal != 0 {
         let lane = equal.trailing_zeros() as usize % LANES;
         equal &= equal - 1;
-        closer |= u32::from((instance, triangle) < best.order(lane)) << lane;
+        let before = triangle::is_before(trunk.names, (instance, triangle), best.order(lane));
+        closer |= u32::from(before) << lane;
     }
     let (u, v) = (v.div(determinant), w.div(determinant));
-    if block.masked >> (slot % FAT) & 1 != 0 {
+    if number.is_masked() {
+        let (instance, triangle) = triangle::name(trunk.names, instance, triangle);
         let (u, v) = (u.to_array(), v.to_array());
         let mut asked = closer;
         while asked != 0 {
@@ -95,30 +96,40 @@ fn triangle<const W: usize, R: Rays, Q: Query>(
     0
 }
 
-/// One corner as each ray sees it.
+/// Rays that meet the box with `planes` within their limits by the exact test, and the near distances of all.
 #[inline(always)]
-fn corner<R: Rays>(corner: &[[f32; FAT]; 3], slot: usize, packet: &Packet) -> (R, R) {
-    let (slot, [x, y, z]) = (slot % FAT, packet.axes);
-    let depth = R::splat(corner[z][slot]).sub(packet.origin[z].load::<R>());
-    let sx = packet.shear[0].load::<R>();
-    let sy = packet.shear[1].load::<R>();
-    (
-        R::splat(corner[x][slot]).sub(packet.origin[x].load::<R>()).sub(sx.mul(depth)),
-        R::splat(corner[y][slot]).sub(packet.origin[y].load::<R>()).sub(sy.mul(depth)),
-    )
+fn meets<R: Rays>(planes: &[f32; 6], packet: &Packet<'_>) -> (u32, R) {
+    let mut near = R::splat(0.0);
+    let mut far = R::splat(f32::INFINITY);
+    for axis in 0..3 {
+        let origin = packet.bundle.origin[axis].load::<R>();
+        let reciprocal = packet.bundle.reciprocal[axis].load::<R>();
+        near = R::splat(planes[packet.order.near(axis)]).sub(origin).mul(reciprocal).max(near);
+        far = R::splat(planes[packet.order.far(axis)]).sub(origin).mul(reciprocal).min(far);
+    }
+    (near.le(far.mul(R::splat(slab::WIDEN)).min(packet.limit.load::<R>())), near)
 }
 
-/// Box of one triangle, as those of the children of a node.
+/// One corner as each ray sees it.
 #[inline(always)]
-fn bounds(block: &Block, slot: usize) -> [[f32; 1]; 6] {
-    triangle::planes(block, slot % FAT).map(|plane| [plane])
+fn corner<R: Rays>(corner: &[[f32; FAT]; 3], slot: usize, packet: &Packet<'_>) -> (R, R) {
+    let (slot, [x, y, z]) = (slot % FAT, packet.axes.map(|axis| axis as usize));
+    let Bundle { origin, shear, .. } = packet.bundle;
+    let depth = R::splat(corner[z][slot]).sub(origin[z].load::<R>());
+    let sx = shear[0].load::<R>();
+    let sy = shear[1].load::<R>();
+    (
+        R::splat(corner[x][slot]).sub(origin[x].load::<R>()).sub(sx.mul(depth)),
+        R::splat(corner[y][slot]).sub(origin[y].load::<R>()).sub(sy.mul(depth)),
+    )
 }
 
 /// Distances at which the rays meet the plane of one triangle.
 #[inline(always)]
-fn distances<R: Rays>(block: &Block, slot: usize, packet: &Packet) -> R {
-    let [x, y, z] = packet.axes;
-    let origin = [packet.origin[x].load(), packet.origin[y].load(), packet.origin[z].load()];
-    let shear = [packet.shear[0].load(), packet.shear[1].load(), packet.shear[2].load()];
+fn distances<R: Rays>(block: &Block, slot: usize, packet: &Packet<'_>) -> R {
+    let [x, y, z] = packet.axes.map(|axis| axis as usize);
+    let Bundle { origin, shear, .. } = packet.bundle;
+    let origin = [origin[x].load(), origin[y].load(), origin[z].load()];
+    let shear = [shear[0].load(), shear[1].load(), shear[2].load()];
     R::plane_distances(&Plane::of(block, slot, packet.axes), origin, shear)
 }

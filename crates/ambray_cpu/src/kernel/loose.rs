@@ -3,7 +3,7 @@
 //! Where a tile shows many small surfaces, the directions of a run point everywhere. But a batch has thousands of rays: by
 //! direction they are sorted into as many cells as make packets of them again.
 
-use glam::Vec3;
+use super::bundle::{Bundle, LANES};
 
 /// Cells along a side of the part of a cube's face in one octant; a power of two.
 const SIDE: u32 = 4;
@@ -30,10 +30,10 @@ pub(crate) struct Loose {
 }
 
 impl Loose {
-    /// Adds ray `index` of the batch.
+    /// Adds ray `index` of the batch, which is in a lane of `bundle`.
     #[inline(always)]
-    pub(crate) fn push(&mut self, index: usize, direction: Vec3) {
-        self.rays.push(LooseRay { cell: cell(direction), index: index as u32 });
+    pub(crate) fn push(&mut self, index: usize, bundle: &Bundle, lane: usize) {
+        self.rays.push(LooseRay { cell: cell(bundle, lane), index: index as u32 });
     }
 
     /// The rays sorted by cell, by counting; those of one cell keep their order.
@@ -67,21 +67,14 @@ impl Loose {
     }
 }
 
-/// Cell of a direction on a cube around the origin: octant and longest axis first, then a grid in Morton order. Any number
-/// will do for directions that are not finite.
+/// Cell of a ray's direction on a cube around the origin: octant and longest axis first, then a grid in Morton order.
 #[inline(always)]
-fn cell(d: Vec3) -> u32 {
-    let a = d.abs();
-    let (face, z, x, y) = if a.x >= a.y && a.x >= a.z {
-        (0, a.x, a.y, a.z)
-    } else if a.y >= a.z {
-        (1, a.y, a.z, a.x)
-    } else {
-        (2, a.z, a.x, a.y)
-    };
-    let octant = u32::from(d.x < 0.0) | u32::from(d.y < 0.0) << 1 | u32::from(d.z < 0.0) << 2;
-    let scale = SIDE as f32 / z;
-    let (x, y) = (((x * scale) as u32).min(SIDE - 1), ((y * scale) as u32).min(SIDE - 1));
+fn cell(bundle: &Bundle, lane: usize) -> u32 {
+    let (order, axes) = bundle.turn(lane);
+    let octant = u32::from(order.down[0]) | u32::from(order.down[1]) << 1 | u32::from(order.down[2]) << 2;
+    // Not above 1: the direction is longest along the last axis.
+    let along = |axis: usize| ((bundle.shear[axis].0[lane % LANES].abs() * SIDE as f32) as u32).min(SIDE - 1);
+    let (x, y) = (along(0), along(1));
     let morton = x & 1 | (y & 1) << 1 | (x & 2) << 1 | (y & 2) << 2;
-    (octant * 3 + face) * CELLS + morton
+    (octant * 3 + axes[2] as u32) * CELLS + morton
 }

@@ -15,6 +15,8 @@ mod single;
 pub(crate) mod slab;
 #[cfg(target_arch = "x86_64")]
 mod sse2;
+#[cfg(test)]
+mod tests;
 mod triangle;
 #[cfg(target_arch = "x86_64")]
 mod x86;
@@ -22,8 +24,9 @@ mod x86;
 use ambray_core::trace::{Hit, Ray};
 
 use crate::bvh::layout::{Blas, Child, Node, Tlas};
+use crate::bvh::names::Names;
 use crate::{AlphaTest, Isa};
-use triangle::Entry;
+use triangle::{BAKED, Entry};
 
 /// What is asked about a ray.
 pub(crate) trait Query {
@@ -31,7 +34,7 @@ pub(crate) trait Query {
     const ANY: bool;
     type Answer: Copy;
     /// What is said of a ray: whether it has a hit, and which, where that is asked.
-    fn answer(is_hit: bool, hit: Hit) -> Self::Answer;
+    fn answer(is_hit: bool, hit: impl FnOnce() -> Hit) -> Self::Answer;
 }
 
 /// Asks for the closest hit.
@@ -44,8 +47,8 @@ impl Query for Closest {
     const ANY: bool = false;
     type Answer = Hit;
     #[inline(always)]
-    fn answer(_is_hit: bool, hit: Hit) -> Hit {
-        hit
+    fn answer(is_hit: bool, hit: impl FnOnce() -> Hit) -> Hit {
+        if is_hit { hit() } else { Hit::MISS }
     }
 }
 
@@ -53,7 +56,7 @@ impl Query for Any {
     const ANY: bool = true;
     type Answer = bool;
     #[inline(always)]
-    fn answer(is_hit: bool, _hit: Hit) -> bool {
+    fn answer(is_hit: bool, _hit: impl FnOnce() -> Hit) -> bool {
         is_hit
     }
 }
@@ -92,13 +95,13 @@ impl<'a, const W: usize> Scene<'a, W> {
     /// Trees in world space.
     #[inline(always)]
     pub(crate) fn world_trees(&self) -> impl Iterator<Item = Trunk<'a, W>> + use<'a, W> {
-        let (meshes, alpha) = (self.meshes, self.alpha);
+        let (meshes, alpha, names) = (self.meshes, self.alpha, &self.baked.names);
         let root = self.entry.or(self.baked.nodes.first());
-        let baked = root.map(|root| Trunk { tree: self.baked, root, instance: None, alpha });
+        let baked = root.map(|root| Trunk { tree: self.baked, root, instance: BAKED, alpha, names });
         let direct = self.direct.iter().filter_map(move |one| {
             let tree = &meshes[one.tree as usize];
             let root = tree.nodes.first()?;
-            Some(Trunk { tree, root, instance: Some(one.instance), alpha })
+            Some(Trunk { tree, root, instance: one.instance, alpha, names })
         });
         baked.into_iter().chain(direct)
     }
@@ -111,8 +114,10 @@ pub(crate) struct Trunk<'a, const W: usize> {
     /// What stands for its node 0.
     pub(crate) root: &'a Node<W>,
     /// As in [`Entry`].
-    pub(crate) instance: Option<u32>,
+    pub(crate) instance: u32,
     pub(crate) alpha: &'a dyn AlphaTest,
+    /// Of the baked triangles.
+    pub(crate) names: &'a Names,
 }
 
 impl<'a, const W: usize> Trunk<'a, W> {
@@ -124,7 +129,7 @@ impl<'a, const W: usize> Trunk<'a, W> {
     /// What its triangles share for a ray with `seed`.
     #[inline(always)]
     pub(crate) fn entry(&self, seed: u32) -> Entry<'a> {
-        Entry { instance: self.instance, near: 0.0, seed, alpha: self.alpha }
+        Entry { instance: self.instance, near: 0.0, seed, alpha: self.alpha, names: self.names }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Sixteen rays at once through the trees in world space.
 //!
-//! Nodes are culled for the whole packet by interval arithmetic (Boulos et al. 2006), which stands on the same monotone
-//! operations as the slab test and so never culls what the slab test of a single ray keeps. The boxes that are left are
+//! Nodes are culled for the whole packet by interval arithmetic (Boulos et al. 2006), which never culls what the
+//! [exact test](slab) of a ray of it keeps. The boxes that are left are
 //! tested against each ray at once, while their node is at hand: the tests of several boxes overlap in time, those of one
 //! box when its turn comes would not. A ray that is left alone goes on alone. Answers are those of
 //! [`single`](super::single), bit for bit: both test the same triangles in the same arithmetic, and the order of tests does
@@ -9,14 +9,12 @@
 
 use std::mem::MaybeUninit;
 
-use ambray_core::trace::{Hit, Ray};
+use ambray_core::trace::Ray;
 
 use super::best::Best;
 use super::bundle::{Bundle, LANES, Packet};
 use super::lanes::{Lanes, Rays};
-use super::ray::Prepared;
-use super::triangle;
-use super::{Query, Scene, Trunk, leaf, single, slab};
+use super::{Query, Scene, Trunk, leaf, single, slab, triangle};
 use crate::bvh::layout::Child;
 
 /// Subtree still to be visited.
@@ -29,8 +27,8 @@ pub(crate) struct Pending {
     slot: u32,
     /// The rays that meet its box.
     live: u16,
-    /// How many hits had shortened rays by then.
-    hits: u16,
+    /// How often limits had changed by then.
+    changes: u16,
 }
 
 /// Scratch memory of a thread.
@@ -58,22 +56,19 @@ pub(crate) fn trace<const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
         }
         open = walk::<W, L, R, Q>(&trunk, rays, &mut packet, open, &mut best, scratch);
     }
+    let has_placed = !scene.placed.nodes.is_empty();
     let mut lanes = group;
     while lanes != 0 {
         let lane = lanes.trailing_zeros() as usize % LANES;
         lanes &= lanes - 1;
         let mut is_hit = best.found >> lane & 1 != 0;
         let mut hit = best.hit(lane, packet.limit.0[lane]);
-        let ray = &rays[lane];
-        let is_answered = Q::ANY && is_hit;
-        if !is_answered
-            && !scene.placed.nodes.is_empty()
-            && let Some(prepared) = Prepared::new(ray.origin, ray.direction)
-        {
-            single::instances::<W, L, Q>(scene, ray, &prepared, &mut hit, &mut scratch.single);
+        if has_placed && !(Q::ANY && is_hit) {
+            let prepared = bundle.ray(lane);
+            single::instances::<W, L, Q>(scene, &rays[lane], &prepared, &mut hit, &mut scratch.single);
             is_hit = hit.is_hit();
         }
-        answers[lane] = Q::answer(is_hit, if is_hit { hit } else { Hit::MISS });
+        answers[lane] = Q::answer(is_hit, || triangle::named(&scene.baked.names, hit));
     }
 }
 
@@ -83,7 +78,7 @@ pub(crate) fn trace<const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
 fn walk<const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
     trunk: &Trunk<'_, W>,
     rays: &[Ray],
-    packet: &mut Packet,
+    packet: &mut Packet<'_>,
     mut open: u32,
     best: &mut Best,
     scratch: &mut Scratch,
@@ -95,8 +90,9 @@ fn walk<const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
     let mut live = open;
     loop {
         if child.is_leaf() {
-            let block = &tree.blocks[child.index()];
-            if live.count_ones() < block.count {
+            let (index, count) = child.in_block();
+            let block = &tree.blocks[index];
+            if live.count_ones() < count {
                 let mut lanes = live;
                 while lanes != 0 {
                     let lane = lanes.trailing_zeros() as usize % LANES;
@@ -104,22 +100,24 @@ fn walk<const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
                     let ray = packet.ray(lane);
                     let mut hit = best.hit(lane, packet.limit.0[lane]);
                     if triangle::block::<L::Eight, Q>(block, &ray, &trunk.entry(rays[lane].seed), &mut hit) {
-                        packet.settle::<Q>(lane, &hit, best);
+                        packet.shorten_one(lane, hit.t);
+                        best.replace(lane, &hit);
                         open &= !(u32::from(Q::ANY) << lane);
                     }
                 }
             } else {
-                open &= !leaf::visit::<W, R, Q>(trunk, block, packet, rays, live, best);
+                open &= !leaf::visit::<W, R, Q>(trunk, (block, count), packet, rays, live, best);
             }
         } else if live & (live - 1) == 0 {
             let lane = live.trailing_zeros() as usize % LANES;
-            let ray = packet.ray(lane);
+            let ray = packet.ray(lane).prepared();
             let mut hit = best.hit(lane, packet.limit.0[lane]);
             let entry = trunk.entry(rays[lane].seed);
             if single::blas::<W, L, Q>(tree, trunk.root, child, &ray, &entry, &mut hit, &mut scratch.single)
                 || !Q::ANY
             {
-                packet.settle::<Q>(lane, &hit, best);
+                packet.shorten_one(lane, hit.t);
+                best.replace(lane, &hit);
                 open &= !(u32::from(Q::ANY) << lane);
             }
         } else {
@@ -130,13 +128,14 @@ fn walk<const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
             while mask != 0 {
                 let slot = mask.trailing_zeros() as usize % W;
                 mask &= mask - 1;
-                let (met, _) = meets::<W, R>(&node.planes, slot, packet);
+                let met = meets::<W, R>(&node.planes, slot, packet);
                 let live = (met & live) as u16;
                 if live == 0 {
                     continue;
                 }
                 let near = near[slot];
-                let pending = Pending { near, parent: child, slot: slot as u32, live, hits: packet.hits };
+                let pending =
+                    Pending { near, parent: child, slot: slot as u32, live, changes: packet.changes };
                 let mut at = top;
                 // Where the closest hit is asked for, the nearest come first; the order of the others does not matter.
                 while !Q::ANY && at > bottom {
@@ -166,8 +165,8 @@ fn walk<const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
             let node = trunk.node(pending.parent);
             let slot = pending.slot as usize % W;
             // Rays that have become shorter may miss it now.
-            if !Q::ANY && pending.hits != packet.hits {
-                let (met, _) = meets::<W, R>(&node.planes, slot, packet);
+            if !Q::ANY && pending.changes != packet.changes {
+                let met = meets::<W, R>(&node.planes, slot, packet);
                 live &= met;
                 if live == 0 {
                     continue;
@@ -181,39 +180,39 @@ fn walk<const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
 
 /// Those of `W` boxes that some ray of the packet may meet, and bounds on the near distances of all.
 ///
-/// (plane − origin) · reciprocal is monotone in both factors. The near distance of a box counts only where it is positive:
-/// there the origin nearest to the plane and the smallest reciprocal bound it from below. Where the far distance is
-/// negative no ray meets the box; elsewhere the origin farthest from the plane and the largest reciprocal bound it from
-/// above. (No product underflows to −0: reciprocals of unit directions are no smaller than 1.)
+/// Where the near plane is ahead of all origins, the origin nearest to it and the smallest reciprocal bound its distance from
+/// below; elsewhere the distance does not count. Where the far plane is behind all origins no ray meets the box; elsewhere
+/// the origin farthest from it and the largest reciprocal bound its distance from above. Their product may be too large for a
+/// number, so even empty slots may be let through, but not by [`meets`], which has to follow.
 #[inline(always)]
-pub(crate) fn overlaps<const W: usize, L: Lanes<W>>(planes: &[[f32; W]; 6], packet: &Packet) -> (u32, L) {
+pub(crate) fn overlaps<const W: usize, L: Lanes<W>>(planes: &[[f32; W]; 6], packet: &Packet<'_>) -> (u32, L) {
     let mut near = L::splat(0.0);
     let mut far = L::splat(packet.largest_limit);
     for axis in 0..3 {
-        let [late, early] = packet.origins[axis];
-        let [small, large] = packet.reciprocals[axis];
-        let near_gap = L::load(&planes[packet.near[axis]]).sub(L::splat(late));
-        let far_gap = L::load(&planes[packet.far[axis]]).sub(L::splat(early));
-        near = near_gap.mul(L::splat(small)).max(near);
-        far = far_gap.mul(L::splat(large)).min(far);
+        let (enter, leave) = (packet.enter[axis], packet.leave[axis]);
+        let first = L::load(&planes[packet.order.near(axis)]);
+        let last = L::load(&planes[packet.order.far(axis)]);
+        near = first.mul_sub(L::splat(enter[0]), L::splat(enter[1])).max(near);
+        far = last.mul_sub(L::splat(leave[0]), L::splat(leave[1])).min(far);
     }
-    (near.le(far.mul(L::splat(slab::WIDEN))), near)
+    (near.le(far.mul(L::splat(slab::SLACK))), near)
 }
 
-/// Rays that meet the box in `slot` within their limits, and the near distances of all.
+/// Rays that may meet the box in `slot` within their limits.
 #[inline(always)]
-pub(crate) fn meets<const W: usize, R: Rays>(
+pub(super) fn meets<const W: usize, R: Rays>(
     planes: &[[f32; W]; 6],
     slot: usize,
-    packet: &Packet,
-) -> (u32, R) {
+    packet: &Packet<'_>,
+) -> u32 {
     let mut near = R::splat(0.0);
-    let mut far = R::splat(f32::INFINITY);
+    let mut far = packet.limit.load::<R>();
     for axis in 0..3 {
-        let origin = packet.origin[axis].load::<R>();
-        let reciprocal = packet.reciprocal[axis].load::<R>();
-        near = R::splat(planes[packet.near[axis]][slot % W]).sub(origin).mul(reciprocal).max(near);
-        far = R::splat(planes[packet.far[axis]][slot % W]).sub(origin).mul(reciprocal).min(far);
+        let reciprocal = packet.bundle.reciprocal[axis].load::<R>();
+        let first = R::splat(planes[packet.order.near(axis)][slot % W]);
+        let last = R::splat(planes[packet.order.far(axis)][slot % W]);
+        near = first.mul_sub(reciprocal, packet.bundle.enter[axis].load()).max(near);
+        far = last.mul_sub(reciprocal, packet.bundle.leave[axis].load()).min(far);
     }
-    (near.le(far.mul(R::splat(slab::WIDEN)).min(packet.limit.load::<R>())), near)
+    near.le(far.mul(R::splat(slab::SLACK)))
 }

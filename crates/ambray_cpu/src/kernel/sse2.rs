@@ -104,6 +104,10 @@ macro_rules! lanes {
                 each!(self, other, _mm_div_ps)
             }
             #[inline(always)]
+            fn mul_sub(self, factor: Self, less: Self) -> Self {
+                self.mul(factor).sub(less)
+            }
+            #[inline(always)]
             fn min(self, other: Self) -> Self {
                 each!(self, other, _mm_min_ps)
             }

@@ -16,15 +16,16 @@ use ambray_core::trace::Hit;
 
 use super::Query;
 use super::lanes::Lanes;
-use super::ray::Prepared;
+use super::ray::{Axis, OneRay, Order};
 use super::slab;
 use crate::bvh::layout::{Block, FAT};
+use crate::bvh::names::Names;
 
 /// Lets `ray` see all triangles of a block. Returns whether it has a new best hit, with which an any-hit query is answered.
 #[inline(always)]
 pub(crate) fn block<L: Lanes<FAT>, Q: Query>(
     block: &Block,
-    ray: &Prepared,
+    ray: &impl OneRay,
     entry: &Entry<'_>,
     best: &mut Hit,
 ) -> bool {
@@ -63,7 +64,8 @@ pub(crate) fn block<L: Lanes<FAT>, Q: Query>(
 
 /// Triangles whose boxes `ray` meets for t in [0, `limit`], and the near distances of all.
 #[inline(always)]
-fn boxes<L: Lanes<FAT>>(block: &Block, ray: &Prepared, limit: f32) -> (u32, L) {
+fn boxes<L: Lanes<FAT>>(block: &Block, ray: &impl OneRay, limit: f32) -> (u32, L) {
+    let order: Order = ray.order();
     let mut near = L::splat(0.0);
     let mut far = L::splat(f32::INFINITY);
     for axis in 0..3 {
@@ -71,8 +73,8 @@ fn boxes<L: Lanes<FAT>>(block: &Block, ray: &Prepared, limit: f32) -> (u32, L) {
         let b = L::load(&block.corners[1][axis]);
         let c = L::load(&block.corners[2][axis]);
         let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-        let (first, last) = if ray.near[axis] >= 3 { (high, low) } else { (low, high) };
-        let (origin, reciprocal) = (L::splat(ray.origin[axis]), L::splat(ray.reciprocal[axis]));
+        let (first, last) = if order.down[axis] { (high, low) } else { (low, high) };
+        let (origin, reciprocal) = (L::splat(ray.origin(axis)), L::splat(ray.reciprocal(axis)));
         near = first.sub(origin).mul(reciprocal).max(near);
         far = last.sub(origin).mul(reciprocal).min(far);
     }
@@ -81,24 +83,49 @@ fn boxes<L: Lanes<FAT>>(block: &Block, ray: &Prepared, limit: f32) -> (u32, L) {
 
 /// One corner of all triangles, translated and sheared.
 #[inline(always)]
-fn corner<L: Lanes<FAT>>(axes: &[[f32; FAT]; 3], ray: &Prepared) -> (L, L) {
-    let [x, y, z] = ray.axes;
-    let depth = L::load(&axes[z]).sub(L::splat(ray.origin[z]));
+fn corner<L: Lanes<FAT>>(axes: &[[f32; FAT]; 3], ray: &impl OneRay) -> (L, L) {
+    let [x, y, z] = ray.axes().map(|axis| axis as usize);
+    let depth = L::load(&axes[z]).sub(L::splat(ray.origin(z)));
     (
-        L::load(&axes[x]).sub(L::splat(ray.origin[x])).sub(L::splat(ray.shear[0]).mul(depth)),
-        L::load(&axes[y]).sub(L::splat(ray.origin[y])).sub(L::splat(ray.shear[1]).mul(depth)),
+        L::load(&axes[x]).sub(L::splat(ray.origin(x))).sub(L::splat(ray.shear(0)).mul(depth)),
+        L::load(&axes[y]).sub(L::splat(ray.origin(y))).sub(L::splat(ray.shear(1)).mul(depth)),
     )
 }
 
 /// What all triangles below an instance share.
 #[derive(Clone, Copy)]
 pub(crate) struct Entry<'a> {
-    /// Index of the instance; `None` in the tree of baked triangles, whose blocks know.
-    pub(crate) instance: Option<u32>,
+    /// Index of the instance; [`BAKED`] in the tree of baked triangles.
+    pub(crate) instance: u32,
     /// Near distance of the instance's box.
     pub(crate) near: f32,
     pub(crate) seed: u32,
     pub(crate) alpha: &'a dyn crate::AlphaTest,
+    /// Of the baked triangles.
+    pub(crate) names: &'a Names,
+}
+
+/// In place of an instance: the triangle is the number of a baked one.
+pub(crate) const BAKED: u32 = Hit::NONE - 1;
+
+/// Instance and triangle of a hit, which may be a baked triangle's.
+#[inline(always)]
+pub(crate) fn name(names: &Names, instance: u32, triangle: u32) -> (u32, u32) {
+    if instance == BAKED { names.of_number(triangle) } else { (instance, triangle) }
+}
+
+/// Of two hits at the same distance: whether the first goes before the second. Numbers of baked triangles may not be in the
+/// order of their names.
+#[inline(never)]
+pub(crate) fn is_before(names: &Names, first: (u32, u32), second: (u32, u32)) -> bool {
+    name(names, first.0, first.1) < name(names, second.0, second.1)
+}
+
+/// A hit under the name of its triangle.
+#[inline(always)]
+pub(crate) fn named(names: &Names, mut hit: Hit) -> Hit {
+    (hit.instance, hit.triangle) = name(names, hit.instance, hit.triangle);
+    hit
 }
 
 /// Plane of a triangle in double precision, with axes permuted as its rays have them.
@@ -110,14 +137,15 @@ pub(crate) struct Plane {
 
 /// A corner of a triangle with axes permuted.
 #[inline(always)]
-fn at(block: &Block, corner: usize, lane: usize, [x, y, z]: [usize; 3]) -> [f64; 3] {
+fn at(block: &Block, corner: usize, lane: usize, [x, y, z]: [Axis; 3]) -> [f64; 3] {
     let axes = &block.corners[corner];
-    [f64::from(axes[x][lane % FAT]), f64::from(axes[y][lane % FAT]), f64::from(axes[z][lane % FAT])]
+    let of = |axis: Axis| f64::from(axes[axis as usize][lane % FAT]);
+    [of(x), of(y), of(z)]
 }
 
 impl Plane {
     #[inline(always)]
-    pub(crate) fn of(block: &Block, lane: usize, axes: [usize; 3]) -> Self {
+    pub(crate) fn of(block: &Block, lane: usize, axes: [Axis; 3]) -> Self {
         let (a, b, c) = (at(block, 0, lane, axes), at(block, 1, lane, axes), at(block, 2, lane, axes));
         let e1 = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
         let e2 = [c[0] - a[0], c[1] - a[1], c[2] - a[2]];
@@ -153,28 +181,33 @@ struct Covered {
 fn candidate(
     block: &Block,
     lane: usize,
-    ray: &Prepared,
+    ray: &impl OneRay,
     entry: &Entry<'_>,
     Covered { v, w, determinant, near }: Covered,
     best: &mut Hit,
 ) -> bool {
     let lane = lane % FAT;
-    let origin = ray.axes.map(|axis| ray.origin[axis]);
-    let t = Plane::of(block, lane, ray.axes).distance(origin, ray.shear);
+    let axes = ray.axes();
+    let origin = axes.map(|axis| ray.origin(axis as usize));
+    let t = Plane::of(block, lane, axes).distance(origin, [ray.shear(0), ray.shear(1), ray.shear(2)]);
     // Written so that what is not a number fails; a determinant of 0 is a triangle seen edge-on.
-    if !(t > 0.0 && t <= best.t) || determinant == 0.0 {
+    if !(t > 0.0 && t <= best.t && determinant.abs() > 0.0) {
         return false;
     }
     let t = t.max(near).max(entry.near);
-    let instance = entry.instance.unwrap_or(block.instances[lane]);
-    let triangle = block.triangles[lane];
-    let closer = t < best.t || (t == best.t && (instance, triangle) < (best.instance, best.triangle));
+    let (instance, number) = (entry.instance, block.triangles[lane]);
+    let triangle = number.index();
+    let before = || is_before(entry.names, (instance, triangle), (best.instance, best.triangle));
+    let closer = t < best.t || (t == best.t && before());
     if !closer || t == f32::INFINITY {
         return false;
     }
     let (u, v) = (v / determinant, w / determinant);
-    if block.masked >> lane & 1 != 0 && !entry.alpha.accepts(instance, triangle, u, v, entry.seed) {
-        return false;
+    if number.is_masked() {
+        let (instance, triangle) = name(entry.names, instance, triangle);
+        if !entry.alpha.accepts(instance, triangle, u, v, entry.seed) {
+            return false;
+        }
     }
     *best = Hit { t, u, v, instance, triangle };
     true

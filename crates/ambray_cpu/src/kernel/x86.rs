@@ -62,6 +62,11 @@ impl Lanes<8> for Avx2x8 {
         Self(unsafe { _mm256_div_ps(self.0, other.0) })
     }
     #[inline(always)]
+    fn mul_sub(self, factor: Self, less: Self) -> Self {
+        // SAFETY: AVX2 and FMA are enabled, see the module.
+        Self(unsafe { _mm256_fmsub_ps(self.0, factor.0, less.0) })
+    }
+    #[inline(always)]
     fn min(self, other: Self) -> Self {
         // SAFETY: AVX2 is enabled, see the module.
         Self(unsafe { _mm256_min_ps(self.0, other.0) })
@@ -156,6 +161,10 @@ impl Lanes<16> for Avx2x16 {
         Self(self.0.div(other.0), self.1.div(other.1))
     }
     #[inline(always)]
+    fn mul_sub(self, factor: Self, less: Self) -> Self {
+        Self(self.0.mul_sub(factor.0, less.0), self.1.mul_sub(factor.1, less.1))
+    }
+    #[inline(always)]
     fn min(self, other: Self) -> Self {
         Self(self.0.min(other.0), self.1.min(other.1))
     }
@@ -231,6 +240,11 @@ impl Lanes<16> for Avx512x16 {
     fn div(self, other: Self) -> Self {
         // SAFETY: AVX-512 is enabled, see the module.
         Self(unsafe { _mm512_div_ps(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn mul_sub(self, factor: Self, less: Self) -> Self {
+        // SAFETY: AVX-512 is enabled, see the module.
+        Self(unsafe { _mm512_fmsub_ps(self.0, factor.0, less.0) })
     }
     #[inline(always)]
     fn min(self, other: Self) -> Self {

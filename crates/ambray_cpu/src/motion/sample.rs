@@ -21,7 +21,9 @@ impl Sample {
     pub(crate) fn distance(&self, other: &Self) -> f64 {
         let squared = |(a, b): (&Vec3, &Vec3)| a.as_dvec3().distance_squared(b.as_dvec3());
         let sum: f64 = self.0.iter().zip(&other.0).map(squared).sum();
-        sum / self.0.len().max(1) as f64
+        let mean = sum / self.0.len().max(1) as f64;
+        // Nothing is near a vertex that is nowhere.
+        if mean.is_nan() { f64::INFINITY } else { mean }
     }
 }
 

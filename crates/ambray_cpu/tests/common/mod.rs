@@ -271,10 +271,9 @@ fn union(a: [f32; 6], b: [f32; 6]) -> [f32; 6] {
 fn slab(planes: &[f32; 6], origin: Vec3, direction: Vec3) -> Option<f32> {
     let (mut near, mut far) = (0.0_f32, f32::INFINITY);
     for axis in 0..3 {
-        let mut reciprocal = 1.0 / direction[axis];
-        if reciprocal.abs() > 1.267_650_6e30 {
-            reciprocal = 1.267_650_6e30_f32.copysign(direction[axis]);
-        }
+        // There is no −0, and origin · reciprocal is finite.
+        let largest = 8.507_059e37 / origin[axis].abs().max(1.0);
+        let reciprocal = (1.0 / (direction[axis] + 0.0)).clamp(-largest, largest);
         let ends = [axis, axis + 3].map(|plane| (planes[plane] - origin[axis]) * reciprocal);
         near = near.max(ends[0].min(ends[1]));
         far = far.min(ends[0].max(ends[1]));
@@ -311,7 +310,7 @@ fn intersect(corners: &[Vec3; 3], origin: Vec3, direction: Vec3) -> Option<(f32,
     let normal = (b - a).cross(c - a);
     let depth = normal.dot(a) / normal.dot(DVec3::new(shear[0].into(), shear[1].into(), 1.0));
     let t = (depth * f64::from(shear[2])) as f32;
-    if t <= 0.0 || t.is_nan() || determinant == 0.0 {
+    if t <= 0.0 || t.is_nan() || determinant == 0.0 || determinant.is_nan() {
         return None;
     }
     let near = slab(&bounds(corners), origin, direction)?;

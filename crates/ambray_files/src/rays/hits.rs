@@ -100,10 +100,11 @@ impl Hits {
             } else if *a != NONE && kind == RayKind::Closest {
                 let (s, t) = (f64::from(*s), f64::from(*t));
                 let difference = (s - t).abs() / s.abs().max(t.abs()).max(f64::MIN_POSITIVE);
-                if difference > Agreement::FAR {
-                    agreement.far += 1;
-                } else {
+                // What is not a number is far.
+                if difference <= Agreement::FAR {
                     agreement.largest_difference = agreement.largest_difference.max(difference);
+                } else {
+                    agreement.far += 1;
                 }
             }
         }

@@ -23,14 +23,16 @@ impl Words {
     /// Opens the file at `path`, which is to begin with `magic` and the version.
     pub(super) fn open(path: &Path, magic: &[u8; 4]) -> anyhow::Result<Self> {
         let file = File::open(path)?;
-        let length = file.metadata()?.len();
+        let metadata = file.metadata()?;
+        ensure!(metadata.is_file(), "is no regular file");
+        let length = metadata.len();
         let mut file = BufReader::with_capacity(1 << 16, file);
         let mut found = [0; 4];
         let is_whole = file.read_exact(&mut found).is_ok();
         let name = magic.escape_ascii();
         ensure!(is_whole && found == *magic, "is no {name} file: it does not begin with {name}");
         ensure!(length.is_multiple_of(4), "is cut off: its length is no multiple of 4 bytes");
-        let mut words = Self { file, left: length / 4 - 1 };
+        let mut words = Self { file, left: (length / 4).saturating_sub(1) };
         match words.next()? {
             VERSION => Ok(words),
             other => bail!("has the version {other}, and only {VERSION} is known"),

@@ -74,7 +74,8 @@ pub(super) fn write(
 fn check_memory(settings: &Settings) -> anyhow::Result<()> {
     let (size, spp) = (settings.size, u64::from(settings.spp));
     let rays = 1 + spp + spp * spp / 2 + spp / 2;
-    let needed = u64::from(size.width) * u64::from(size.height) * rays.saturating_mul(RAY_BYTES);
+    let pixels = u64::from(size.width) * u64::from(size.height);
+    let needed = pixels.saturating_mul(rays).saturating_mul(RAY_BYTES);
     match machine::free_memory() {
         Some(free) if needed > free => bail!(
             "--size {size} with --spp {spp} is not allowed here: all rays need up to {} of memory, and {} are free",

@@ -135,6 +135,16 @@ fn check(args: &BenchArgs) -> anyhow::Result<()> {
             "settings are not allowed with --rays without a scene: the rays are those in the folder"
         );
     }
+    let of_rounds = [
+        ("--check-hits", args.rays.check_hits.is_some()),
+        ("--write-hits", args.rays.write_hits.is_some()),
+        ("--batches", !args.rays.batches.is_empty()),
+    ];
+    if args.rays.rounds() == 0
+        && let Some((name, _)) = of_rounds.into_iter().find(|(_, given)| *given)
+    {
+        bail!("{name} is not allowed with --rounds 0: no rays are traced");
+    }
     match isas(args).into_iter().find(|isa| !isa.is_available()) {
         Some(isa) => bail!("--isa {} is not allowed: this machine lacks it", isa.name()),
         None => Ok(()),
