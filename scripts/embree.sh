@@ -49,6 +49,8 @@ here=$(cd "$(dirname "$0")" && pwd)
 
 work=${keep:-$(mktemp -d)}
 mkdir -p "$work"
+# What an earlier run left there would get into the table.
+[ -z "$(ls -A "$work")" ] || die "$work is not empty: --keep needs a folder of its own"
 [ -n "$keep" ] || trap 'rm -rf "$work"' EXIT
 
 # Builds a source with the newest Embree there is.
@@ -95,6 +97,7 @@ for folder in "$@"; do
     kind=$([ "$(od -An -t u4 -j 12 -N 4 "$rays" | tr -d ' ')" = 1 ] && echo any || echo closest)
     for round in $(seq "$rounds"); do
       echo "$folder, $name, round $round of $rounds" >&2
+      # The hits that are compared are those of the last.
       for tree in medium high; do
         "$embree" "$folder/scene.tris" "$rays" "$threads" "$inner" $tree $kind "$place/hits/$name.hits" \
           >"$place/embree.$name.$round.$tree.txt"

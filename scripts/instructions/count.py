@@ -17,7 +17,7 @@ HASH = re.compile(r"::h[0-9a-f]{16}$")
 NAME = re.compile(r"\((\d+)\)(?: (.*))?")
 PATH = re.compile(r"^<*&?(?:mut |dyn )?([a-z_0-9]+(?:::[a-z_0-9]+)*)")
 SOURCE = re.compile(r"crates/(ambray\w*)/src/(\w+)")
-TREES = "ambray_cpu::bvh", "obvhs"
+TREES = ("ambray_cpu::bvh",)
 
 
 def by_module(path):
@@ -54,8 +54,6 @@ def module(function, file):
     """Crate and module of a function. One of the standard library may be nothing but a closure: its lines tell then."""
     found = PATH.match(HASH.sub("", function))
     parts = found.group(1).split("::") if found else []
-    if parts[:1] == ["obvhs"]:
-        return "obvhs"
     if parts and parts[0].startswith("ambray"):
         return "::".join(parts[:2])
     source = SOURCE.search(file)

@@ -75,7 +75,7 @@ fn rays_of_a_frame_are_written_and_measured() {
             assert!(0.0 < of("min") && of("min") <= of("median") && of("median") <= of("max"), "{rate}");
         }
     }
-    // Four pairs of two of four rays, six in all; and eight modes at the least: packets and one by one.
+    // Two of four rays make six pairs. Each instruction set has two modes: packets, and ray by ray.
     assert_eq!(word(&bench.read("rays/chords-paper.rays"), 5), 6);
     let rates = batch("ambient")["rates"].clone();
     let portable: Vec<_> =
@@ -223,6 +223,8 @@ fn options_that_do_not_go_together_are_refused() {
     bench.run(&with(&MEASURE, &["--spp=3"])).fails(&["settings are not allowed", "without a scene"]);
     bench.run(&with(&MEASURE, &["--opaque"])).fails(&["--opaque is not allowed", "without a scene"]);
     bench.run(&with(&MEASURE, &["--frames=3"])).fails(&["--frames is not allowed with --rays"]);
+    let nothing = ["bench", "--rays=rays", "--rounds=0", "--batches=ambient"];
+    bench.run(&nothing).fails(&["--batches is not allowed with --rounds 0"]);
     bench.run(&with(&MEASURE, &["a.obj", "b.obj"])).fails(&["--rays: the scene b.obj is one too many"]);
     bench.run(&with(&MEASURE, &["--check-hits=none"])).fails(&["none/ambient.hits"]);
     bench.run(&["bench", "--triangles=3"]).fails(&["--triangles is not allowed without --rays"]);
