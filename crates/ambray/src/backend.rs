@@ -68,6 +68,8 @@ pub(crate) struct Backends {
     /// What the scene shows; `None` if it does not move, or if nobody knows since a move has failed.
     pose: Option<Pose>,
     build: BuildOptions,
+    /// Threads that build trees, 0 for one a core.
+    threads: usize,
     vulkan: Option<VulkanBackend>,
     cpu: OnceLock<CpuBackend>,
     /// What rays of the device hit, as the host sees it, with the pose that it shows. Made when it is first needed.
@@ -105,6 +107,7 @@ impl Backends {
             pose: scene.rig.as_ref().map(|rig| rig.pose(None)),
             scene,
             build: options.build,
+            threads: control.threads,
             vulkan: None,
             cpu: OnceLock::new(),
             surfaces: Mutex::default(),
@@ -130,6 +133,7 @@ impl Backends {
             pose: scene.rig.as_ref().map(|rig| rig.pose(None)),
             scene,
             build: self.build,
+            threads: control.threads,
             vulkan: None,
             cpu: OnceLock::new(),
             surfaces: Mutex::default(),
@@ -239,7 +243,7 @@ impl Backends {
         }
         // Whole or empty at any time, so a panic of another thread does not matter.
         let mut slot = self.aside.lock().unwrap_or_else(PoisonError::into_inner);
-        let build = || Arc::new(CpuBackend::new(self.posed_scene(), self.build));
+        let build = || Arc::new(CpuBackend::with_threads(self.posed_scene(), self.build, threads));
         let cpu = match (slot.take(), &self.pose) {
             (Some((pose, cpu)), now) if pose == *now => cpu,
             (Some((_, mut cpu)), Some(now)) => match Arc::get_mut(&mut cpu) {
@@ -278,7 +282,7 @@ impl Backends {
     }
 
     fn cpu(&self) -> &CpuBackend {
-        self.cpu.get_or_init(|| CpuBackend::new(self.posed_scene(), self.build))
+        self.cpu.get_or_init(|| CpuBackend::with_threads(self.posed_scene(), self.build, self.threads))
     }
 }
 

@@ -236,7 +236,7 @@ pub struct StageReport {
     pub transfer_ms: f64,
     /// Tracing rays, part of the stages above; 0 on a device.
     pub tracing_ms: f64,
-    /// For how long a thread had nothing to do, mean over the threads; 0 on a device.
+    /// Wall time of the passes that a thread spent outside their stages, mean over the threads; 0 on a device.
     pub idle_ms: f64,
     /// The whole frame, wall time. The first frame of a device compiles its programs.
     pub total_ms: f64,

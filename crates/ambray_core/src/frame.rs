@@ -173,9 +173,12 @@ pub struct StageTimes {
     pub ambient: Duration,
     /// Geometry-aware filter and composition.
     pub filter: Duration,
-    /// Tracing rays, of whatever type: part of the stages above. Zero on a device, whose passes cannot tell it apart.
+    /// Tracing rays, of whatever type and for whatever method: part of the stages above. Zero on a device, whose passes cannot
+    /// tell it apart.
     pub tracing: Duration,
-    /// For how long a thread had nothing to do while others worked, mean over the threads. Zero on a device.
+    /// What the stages of both passes leave of their wall time, mean over the threads: waiting for work or for other threads,
+    /// and what one thread does alone between the loops of all, such as handing out work and mapping planes. A method in screen
+    /// space runs between the passes and is left out. Zero on a device.
     pub idle: Duration,
     /// Bending the vertices of what deforms to the pose of the frame.
     pub deformation: Duration,

@@ -3,7 +3,7 @@
 mod albedo;
 mod at;
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use ambray_core::trace::{Diffuse, Hit, Ray, alpha_threshold};
 use glam::{Affine3A, Mat3A, Vec2, Vec3};
@@ -26,8 +26,8 @@ pub struct Surfaces {
     shape_frames: Vec<ShapeFrame>,
     /// One a mesh: whether all of it is there for all rays.
     opaque: Arc<[bool]>,
-    /// What does not move has the same albedos at all poses.
-    albedos: Arc<Albedos>,
+    /// Empty until they are asked for. What does not move has the same albedos at all poses.
+    albedos: Arc<OnceLock<Albedos>>,
 }
 
 /// What placing an instance does to directions.
@@ -133,21 +133,20 @@ fn towards(v: Vec3, side: Vec3) -> Vec3 {
 }
 
 impl Surfaces {
-    /// Prepares `scene`: one pass over its instances, and over the alpha of materials that are not opaque.
+    /// Prepares `scene`: one pass over its instances, and over the alpha of images and vertices. Tables of albedos wait for
+    /// [`prepare_albedos`](Self::prepare_albedos).
     ///
     /// # Panics
     /// If the scene's indices refer to what is not there.
     #[must_use]
     pub fn new(scene: Arc<Scene>) -> Self {
-        let mut surfaces = Self {
+        Self {
             frames: scene.instances.iter().map(Frame::new).collect(),
             shape_frames: shape_frames(&scene),
             opaque: is_opaque_by_mesh(&scene).into(),
             albedos: Arc::default(),
             scene,
-        };
-        surfaces.albedos = Arc::new(Albedos::new(&surfaces));
-        surfaces
+        }
     }
 
     /// The same surfaces where `scene` has them: the same scene at another pose. Much faster than [`new`](Self::new).

@@ -5,7 +5,7 @@ mod prepared;
 
 use crate::{mip, srgb};
 
-pub(crate) use prepared::{Place, PreparedTexture};
+pub(crate) use prepared::{Place, PreparedImage, PreparedTexture};
 
 /// A decoded image with its mip chain, RGBA with 8 bits a channel.
 #[derive(Clone, Debug, PartialEq)]

@@ -39,6 +39,11 @@ fn check(scene: Scene) {
     let rays = vec![RAY; hits.len()];
     let mut albedos = vec![Vec3::NAN; hits.len()];
     surfaces.albedos_at(&rays, &hits, CONE, &mut albedos);
+    let by_point = albedos.clone();
+    surfaces.prepare_albedos();
+    albedos.fill(Vec3::NAN);
+    surfaces.albedos_at(&rays, &hits, CONE, &mut albedos);
+    assert_eq!(albedos, by_point);
     let mut reader = surfaces.reader();
     for (hit, albedo) in hits.iter().zip(albedos) {
         if !hit.is_hit() {

@@ -213,6 +213,7 @@ impl Player<'_> {
             } else {
                 self.tally.kept(number, time, Some(&frame), outputs);
             }
+            self.renderer.recycle(frame);
             done += 1;
         }
         Ok(())

@@ -116,7 +116,10 @@ impl<const L: usize> Sums<L> {
             let radiance: &[f32; L] = group(&samples.radiance[axis], slot);
             for lane in 0..L {
                 self.bent[axis][lane] += mu[lane] * f64::from(direction[lane]);
-                self.weighted[axis][lane] += weight[lane] * f64::from(radiance[lane]);
+                // A hit without weight adds nothing, however bright: zero times infinity is not a number.
+                let counts = weight[lane] != 0.0;
+                self.weighted[axis][lane] +=
+                    if counts { weight[lane] * f64::from(radiance[lane]) } else { 0.0 };
             }
         }
         if params.temporal {
@@ -164,5 +167,77 @@ impl<const L: usize> Sums<L> {
         gathered.changing = (self.changing[lane] / count) as f32;
         gathered.ambient_rays = self.rays[lane];
         gathered.ambient_hits = self.hits[lane];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        gather::{ShadedPoint, samples::LANES, thin::Chords},
+        offset::RayOffset,
+        openness::Openness,
+        sampling::{PixelKey, SampleSets},
+        settings::{RadianceSource, Settings, Thin},
+        trace::Hit,
+    };
+
+    /// Two hits of each point, whose measure is 1 - 1/d: one of grey 0.5 at 0.5 R, and a `bright` one at `far`.
+    fn gathered(near_radiance: NearRadiance, near_limit: f32, far: f32, bright: f32) -> Vec<Gathered> {
+        let sets = SampleSets::of(&Settings { spp: 2, ..Settings::default() });
+        let params = GatherParams {
+            openness: Openness::Power { radius: 1.0, exponent: 1.0 },
+            radius: 1.0,
+            near_radiance,
+            near_limit,
+            source: RadianceSource::Lit,
+            thin: Thin::Off,
+            thin_edge: false,
+            ambient: Vec3::ONE,
+            lights: &[],
+            offset: RayOffset::UNIT,
+            samples: &sets,
+            temporal: false,
+        };
+        let point = ShadedPoint {
+            position: Vec3::ZERO,
+            geometric_normal: Vec3::Z,
+            reach: 0.0,
+            normal: Vec3::Z,
+            instance: Hit::NONE,
+            key: PixelKey::default(),
+        };
+        // A group of many lanes, and one of a single lane.
+        let points = [point; LANES + 1];
+        let (mut samples, mut chords) = (Samples::default(), Chords::default());
+        samples.begin(&params, &points);
+        chords.skip(points.len());
+        let first = points.len();
+        samples.distance[..first].fill(0.5);
+        samples.distance[first..].fill(far);
+        for plane in &mut samples.radiance {
+            plane[..first].fill(0.5);
+            plane[first..].fill(bright);
+        }
+        let mut gathered = vec![Gathered::default(); points.len()];
+        combine(&params, &samples, chords.results(), &mut gathered);
+        gathered
+    }
+
+    #[test]
+    fn hits_that_do_not_count_may_be_infinitely_bright() {
+        use NearRadiance::{Averaged, AveragedPlain, Off, PerHit};
+        // Beyond the near limit, and where the measure says open.
+        for (near_radiance, near_limit, far) in
+            [(Averaged, 0.6, 0.75), (AveragedPlain, 0.6, 0.75), (Averaged, 2.0, 1.0), (PerHit, 0.6, 1.0)]
+        {
+            let bright = gathered(near_radiance, near_limit, far, f32::INFINITY);
+            let dark = gathered(near_radiance, near_limit, far, 0.0);
+            assert!(dark[0].near.is_finite() && dark[0].near != Vec3::ZERO, "{near_radiance}");
+            assert_eq!(bright, dark, "{near_radiance}");
+        }
+        assert_eq!(gathered(Off, 0.6, 1.0, 0.0)[0].near, Vec3::ZERO);
+        // One that counts is seen.
+        assert_eq!(gathered(Averaged, 0.8, 0.75, f32::INFINITY)[LANES].near, Vec3::INFINITY);
     }
 }

@@ -2,8 +2,8 @@
 //!
 //! Pass 1 runs over tiles of 16 × 16 pixels: primary rays, direct light, and the gather of openness and near radiance
 //! with the pixels of a tile ordered by sample class, so that the rays of a batch are nearly parallel. Pass 2 filters
-//! and composes row by row. Every pixel is a pure function of the scene, the settings and its place, so the picture
-//! does not depend on the number of threads.
+//! and composes in bands of 16 rows. Every pixel is a pure function of the scene, the settings and its place, so the
+//! picture does not depend on the number of threads.
 
 mod motion;
 mod pass1;
@@ -77,21 +77,38 @@ pub struct CpuBackend {
     /// Memory for the next frame.
     planes: Mutex<Planes>,
     /// The threads of the last call, kept for the next one.
-    pool: Mutex<Option<(usize, Arc<ThreadPool>)>>,
+    pool: Mutex<Option<Pool>>,
 }
 
+/// Threads, and how many were asked for: 0 for one a core.
+type Pool = (usize, Arc<ThreadPool>);
+
 impl CpuBackend {
-    /// Builds the trees of `scene`.
+    /// Builds the trees of `scene` with a thread for each core.
+    ///
+    /// # Panics
+    /// As [`with_threads`](Self::with_threads).
     #[must_use]
     pub fn new(scene: Arc<Scene>, options: BuildOptions) -> Self {
+        Self::with_threads(scene, options, 0)
+    }
+
+    /// Builds the trees of `scene` with `threads` threads, 0 for one a core, and keeps these for the first frame. Where they
+    /// cannot be started the caller's work instead, and the first frame says so.
+    ///
+    /// # Panics
+    /// If indices within the scene are out of range, or the machine lacks the instruction set asked for.
+    #[must_use]
+    pub fn with_threads(scene: Arc<Scene>, options: BuildOptions, threads: usize) -> Self {
+        let (world, pool) = by_threads(threads, || CpuWorld::new(scene, options));
         Self {
-            world: CpuWorld::new(scene, options),
+            world,
             previous: None,
             spare: None,
             rendered: AtomicBool::new(false),
             history: Mutex::default(),
             planes: Mutex::default(),
-            pool: Mutex::default(),
+            pool: Mutex::new(pool),
         }
     }
 
@@ -120,19 +137,21 @@ impl CpuBackend {
             earlier: earlier.as_ref(),
         });
         pool.install(|| {
-            let (sequel, isa) = (accumulation.as_ref(), self.world.isa());
+            let (sequel, vectors) = (accumulation.as_ref(), self.world.vectors());
             // Taken out, so that frames that are rendered at once do not wait for each other.
             let mut planes = std::mem::take(&mut *self.planes());
             let mut pass1 = pass1::run(&self.world, settings, view, &params, sequel, &mut planes, control)?;
             let mut times = pass1.clock.shares(pass1.elapsed);
             let pass2 = if settings.method.is_screen_space() {
                 let rival = rival::run(&self.world, settings, view, &params, &mut pass1, control)?;
-                let pass2 = pass2::run(&mut pass1, &rival.settings, view, None, isa, &mut planes, control)?;
+                let pass2 =
+                    pass2::run(&mut pass1, &rival.settings, view, None, vectors, &mut planes, control)?;
                 pass1.ambient = rival.raw;
                 [times.ambient, times.filter] = rival.elapsed;
+                times.tracing += rival.tracing;
                 pass2
             } else {
-                pass2::run(&mut pass1, settings, view, sequel, isa, &mut planes, control)?
+                pass2::run(&mut pass1, settings, view, sequel, vectors, &mut planes, control)?
             };
             let (width, height) = view.camera.size();
             times.filter += pass2.elapsed;
@@ -208,8 +227,40 @@ impl CpuBackend {
         {
             return Ok(Arc::clone(pool));
         }
-        let pool = Arc::new(ThreadPoolBuilder::new().num_threads(threads).build()?);
-        *slot = Some((threads, Arc::clone(&pool)));
-        Ok(pool)
+        let (_, pool) = slot.insert(started(threads)?);
+        Ok(Arc::clone(pool))
+    }
+}
+
+fn started(threads: usize) -> Result<Pool, ThreadPoolBuildError> {
+    Ok((threads, Arc::new(ThreadPoolBuilder::new().num_threads(threads).build()?)))
+}
+
+/// What `build` returns, built by `threads` threads if they can be started, and these.
+fn by_threads<T: Send>(threads: usize, build: impl FnOnce() -> T + Send) -> (T, Option<Pool>) {
+    match started(threads) {
+        Ok(pool) => (pool.1.install(build), Some(pool)),
+        Err(error) => {
+            log::warn!("built by the threads of the caller: {error}");
+            (build(), None)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn as_many_threads_build_as_are_asked_for() {
+        for threads in [1, 3] {
+            let (used, pool) = by_threads(threads, rayon::current_num_threads);
+            assert_eq!((used, pool.unwrap().0), (threads, threads));
+        }
+        let scene = Arc::new(ambray_scene::moving::banner());
+        let backend = CpuBackend::with_threads(scene, BuildOptions::default(), 3);
+        let kept = backend.pool.lock().unwrap().clone().unwrap();
+        assert_eq!((kept.0, kept.1.current_num_threads()), (3, 3));
+        assert!(Arc::ptr_eq(&backend.pool(3).unwrap(), &kept.1));
     }
 }

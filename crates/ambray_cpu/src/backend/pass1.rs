@@ -30,7 +30,7 @@ use super::{
     segment::{Place, SEGMENT, Segment, TILE},
     stages::{Clock, Stage},
     temporal::Sequel,
-    vectors::{self, Work},
+    vectors::Work,
     world::{CpuWorld, Timed},
 };
 
@@ -132,7 +132,7 @@ pub(super) fn run(
             control.check()?;
             let (scratch, segment, counts) = (&mut scratch, &mut segment, &mut counts);
             let columns = first..columns.min(first + TILE);
-            vectors::run(world.isa(), Tile { job: &job, scratch, segment, columns, counts });
+            world.vectors().run(Tile { job: &job, scratch, segment, columns, counts });
         }
         scratches.give(scratch);
         let done = done.fetch_add(1, Ordering::Relaxed) + 1;

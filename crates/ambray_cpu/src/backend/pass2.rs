@@ -1,4 +1,5 @@
-//! Pass 2: the geometry-aware filter, accumulation over frames, then composition (spec §§4, 7, 12), row by row.
+//! Pass 2: the geometry-aware filter, accumulation over frames, then composition (spec §§4, 7, 12), in bands of
+//! rows.
 
 use std::time::{Duration, Instant};
 
@@ -18,9 +19,8 @@ use super::{
     planes::Planes,
     stages::Stage,
     temporal::Sequel,
-    vectors::{self, Work},
+    vectors::{Vectors, Work},
 };
-use crate::Isa;
 
 /// Rows that are filtered together.
 const ROWS: usize = 16;
@@ -45,7 +45,7 @@ pub(super) fn run(
     settings: &Settings,
     view: &View,
     sequel: Option<&Sequel<'_>>,
-    isa: Isa,
+    vectors: Vectors,
     planes: &mut Planes,
     control: Control<'_>,
 ) -> Result<Pass2, Cancelled> {
@@ -68,18 +68,22 @@ pub(super) fn run(
         |rows, (i, ((beauty, ambient), ((bent, history), means)))| {
             control.check()?;
             let (first, start) = (i * ROWS, Instant::now());
-            vectors::run(isa, Band { job: &job, rows, first, beauty, ambient, bent, history, means });
+            vectors.run(Band { job: &job, rows, first, beauty, ambient, bent, history, means });
             pass1.clock.book(Stage::Filter, start);
             Ok(())
         },
     )?;
 
     let finish = |v: Vec4| finished(settings.radiance_source, view.ambient, v);
-    let second = &pass1.second;
+    let Pass1 { ambient: raw, second, clock, .. } = pass1;
     let raw_is_final = second.is_empty() && settings.radiance_source != RadianceSource::SelfSimilar;
     if !raw_is_final {
-        pass1.ambient.par_iter_mut().enumerate().for_each(|(i, raw)| {
-            *raw = finish(second.get(i).map_or(*raw, |&second| smaller_batch(*raw, second)));
+        raw.par_chunks_mut(band).enumerate().for_each(|(i, raw)| {
+            let start = Instant::now();
+            for (raw, pixel) in raw.iter_mut().zip(i * band..) {
+                *raw = finish(second.get(pixel).map_or(*raw, |&second| smaller_batch(*raw, second)));
+            }
+            clock.book(Stage::Filter, start);
         });
     }
     Ok(Pass2 { beauty, ambient, bent, history, means, elapsed: start.elapsed() })

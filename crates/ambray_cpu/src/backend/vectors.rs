@@ -10,19 +10,34 @@ pub(super) trait Work {
     fn run(self) -> Self::Output;
 }
 
-/// Does `work` with the vectors of `isa`, which must be available, as a [`Tracer`](crate::Tracer) checks.
-#[inline]
-pub(super) fn run<W: Work>(isa: Isa, work: W) -> W::Output {
-    match isa {
-        Isa::Portable => work.run(),
-        #[cfg(target_arch = "x86_64")]
-        // SAFETY: the instruction set is available.
-        Isa::Avx2 => unsafe { avx2(work) },
-        #[cfg(target_arch = "x86_64")]
-        // SAFETY: as above.
-        Isa::Avx512 => unsafe { avx512(work) },
-        #[cfg(not(target_arch = "x86_64"))]
-        _ => unreachable!("x86-64 only"),
+/// An instruction set that this machine has.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Vectors(Isa);
+
+impl Vectors {
+    /// Those of `isa`.
+    ///
+    /// # Panics
+    /// If the machine lacks them.
+    pub(super) fn of(isa: Isa) -> Self {
+        assert!(isa.is_available(), "this machine lacks {}", isa.name());
+        Self(isa)
+    }
+
+    /// Does `work` with these vectors.
+    #[inline]
+    pub(super) fn run<W: Work>(self, work: W) -> W::Output {
+        match self.0 {
+            Isa::Portable => work.run(),
+            #[cfg(target_arch = "x86_64")]
+            // SAFETY: whoever made `self` saw that the instruction set is available.
+            Isa::Avx2 => unsafe { avx2(work) },
+            #[cfg(target_arch = "x86_64")]
+            // SAFETY: as above.
+            Isa::Avx512 => unsafe { avx512(work) },
+            #[cfg(not(target_arch = "x86_64"))]
+            _ => unreachable!("x86-64 only"),
+        }
     }
 }
 

@@ -13,19 +13,25 @@ use ambray_core::trace::{Diffuse, Hit, Motion, Ray, Trace, World};
 use ambray_scene::{Scene, surface::Surfaces};
 use glam::Vec3;
 
-use crate::{BuildOptions, Isa, Tracer};
+use super::vectors::Vectors;
+use crate::{BuildOptions, Tracer};
 
 /// Tracer and surfaces of a scene.
 #[derive(Debug)]
 pub struct CpuWorld {
     tracer: Tracer<Arc<Surfaces>>,
     surfaces: Arc<Surfaces>,
+    vectors: Vectors,
 }
 
 impl CpuWorld {
     pub(super) fn new(scene: Arc<Scene>, options: BuildOptions) -> Self {
         let surfaces = Arc::new(Surfaces::new(Arc::clone(&scene)));
-        Self { tracer: Tracer::build(&scene, Arc::clone(&surfaces), options), surfaces }
+        // Now, so that the first frame need not.
+        surfaces.prepare_albedos();
+        let tracer = Tracer::build(&scene, Arc::clone(&surfaces), options);
+        let vectors = Vectors::of(tracer.stats().isa);
+        Self { tracer, surfaces, vectors }
     }
 
     /// Moves everything to where `scene` has it: the same scene at another pose.
@@ -40,9 +46,9 @@ impl CpuWorld {
         &self.tracer
     }
 
-    /// The instruction set that everything is computed with.
-    pub(super) const fn isa(&self) -> Isa {
-        self.tracer.stats().isa
+    /// The vectors that everything is computed with.
+    pub(super) const fn vectors(&self) -> Vectors {
+        self.vectors
     }
 
     /// Attributes of surfaces.

@@ -13,15 +13,22 @@ use super::{
 /// is this level or a smaller one for all but the closest hits; 64 × 64 texels are 64 KiB, all levels below another third.
 const DECODED_TEXELS: usize = 64 * 64;
 
-/// A texture whose coarse levels are decoded.
-#[derive(Debug)]
-pub(crate) struct PreparedTexture {
+/// An image with its coarse levels decoded, four times their size in the image. Clones share them: a file may have any number
+/// of textures of one image.
+#[derive(Clone, Debug)]
+pub(crate) struct PreparedImage {
     image: Arc<Image>,
-    sampler: Sampler,
     texels_across: f32,
     /// The coarse levels' texels, linear, level after level.
-    texels: Vec<Vec4>,
-    levels: Vec<Level>,
+    texels: Arc<[Vec4]>,
+    levels: Arc<[Level]>,
+}
+
+/// A texture whose coarse levels are decoded.
+#[derive(Clone, Debug)]
+pub(crate) struct PreparedTexture {
+    sampler: Sampler,
+    image: PreparedImage,
 }
 
 /// A level of the image.
@@ -35,9 +42,9 @@ struct Level {
 /// Not decoded.
 const FINE: u32 = u32::MAX;
 
-impl PreparedTexture {
-    /// Makes `image` ready to be read by `sampler`.
-    pub(crate) fn new(image: &Arc<Image>, sampler: Sampler) -> Self {
+impl PreparedImage {
+    /// Decodes the coarse levels of `image`.
+    pub(crate) fn new(image: &Arc<Image>) -> Self {
         let (decode, mut texels) = (image.decoder(), Vec::new());
         let mut place = |level: &ImageLevel| {
             let size = (level.width, level.height);
@@ -50,16 +57,29 @@ impl PreparedTexture {
             Level { size, start }
         };
         let levels = image.levels.iter().map(&mut place).collect();
-        Self { image: Arc::clone(image), sampler, texels_across: image.texels_across(), texels, levels }
+        Self { image: Arc::clone(image), texels_across: image.texels_across(), texels: texels.into(), levels }
+    }
+}
+
+impl PreparedTexture {
+    /// Makes `image` ready to be read by `sampler`.
+    pub(crate) fn new(image: &PreparedImage, sampler: Sampler) -> Self {
+        Self { sampler, image: image.clone() }
+    }
+
+    /// Whether the decoded texels of both are the same memory.
+    #[cfg(test)]
+    pub(crate) fn shares_texels(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.image.texels, &other.image.texels)
     }
 
     /// Where to look for the value at `uv` of a footprint of `width` texture units. Apart from looking, so that many looks
     /// can wait for memory at once.
     #[inline(always)]
     pub(crate) fn locate(&self, uv: Vec2, width: f32) -> Place {
-        let Blend { fine, coarse, share, filter } =
-            self.sampler.blend(self.levels.len(), width * self.texels_across);
-        let (fine, coarse) = (self.levels[fine], self.levels[coarse]);
+        let PreparedImage { levels, texels_across, .. } = &self.image;
+        let Blend { fine, coarse, share, filter } = self.sampler.blend(levels.len(), width * texels_across);
+        let (fine, coarse) = (levels[fine], levels[coarse]);
         // The fine one is the larger of the two.
         if fine.start == FINE {
             return Place::Value(self.read_fine(uv, width));
@@ -74,7 +94,7 @@ impl PreparedTexture {
     /// The bits of [`Sampler::sample`] at a place of [`locate`](Self::locate).
     #[inline(always)]
     pub(crate) fn value(&self, place: &Place) -> Vec4 {
-        let read = |(start, quad): &(u32, Quad)| quad.value(Decoded(&self.texels[*start as usize..]));
+        let read = |(start, quad): &(u32, Quad)| quad.value(Decoded(&self.image.texels[*start as usize..]));
         match place {
             Place::Two(fine, coarse, share) => read(fine).lerp(read(coarse), *share),
             Place::One(level) => read(level),
@@ -85,7 +105,7 @@ impl PreparedTexture {
     /// Seldom needed, so its code is not among the rest.
     #[inline(never)]
     fn read_fine(&self, uv: Vec2, width: f32) -> Vec4 {
-        self.sampler.sample(&self.image, uv, width)
+        self.sampler.sample(&self.image.image, uv, width)
     }
 }
 
@@ -130,7 +150,7 @@ mod tests {
                 (Wrap::Repeat, Filter::Linear, None),
             ] {
                 let sampler = Sampler { wrap: [wrap; 2], mag: Filter::Linear, min, mip };
-                let prepared = PreparedTexture::new(&image, sampler);
+                let prepared = PreparedTexture::new(&PreparedImage::new(&image), sampler);
                 for i in 0..2000 {
                     let uv = Vec2::new(i as f32 * 0.0173 - 9.0, i as f32 * -0.0091 + 3.0);
                     let width = libm::exp2f((i % 23) as f32 * 0.5 - 10.0);

@@ -119,13 +119,14 @@ impl Gallery {
         lock(&self.state).hung[side as usize] = None;
     }
 
-    /// Hangs a new picture; `on_device` if the window has it from the device already.
-    pub(super) fn hang(&self, shot: Shot, on_device: bool) {
+    /// Hangs a new picture; `on_device` if the window has it from the device already. Returns the one that hung there.
+    pub(super) fn hang(&self, shot: Shot, on_device: bool) -> Option<Arc<Shot>> {
         let mut state = lock(&self.state);
         state.count += 1;
         let (side, number) = (shot.side as usize, state.count);
-        state.hung[side] = Some(Hung { number, shot: Arc::new(shot), on_device });
+        let old = state.hung[side].replace(Hung { number, shot: Arc::new(shot), on_device });
         self.changed.notify_all();
+        old.map(|hung| hung.shot)
     }
 
     /// Takes everything down, because another scene is open.

@@ -1,8 +1,8 @@
 //! The thread that owns the renderer.
 
-use std::{sync::Arc, time::Instant};
+use std::{collections::VecDeque, sync::Arc, time::Instant};
 
-use ambray::{Control, Drawn, Machine, RenderError, Renderer};
+use ambray::{Control, Drawn, Frame, Machine, RenderError, Renderer};
 use ambray_files::Interrupted;
 
 use super::{
@@ -35,7 +35,12 @@ pub(super) struct Worker {
     compares: bool,
     /// A pixel to be inspected as soon as its picture is there.
     waiting: Option<(Side, (u32, u32))>,
+    /// The last pictures that were taken down. The window may show them still.
+    old: VecDeque<Arc<Frame>>,
 }
+
+/// Pictures that the window shows for a while after they were taken down, with one that it shows no more.
+const OLD: usize = 2;
 
 /// The scene that is open.
 #[derive(Debug)]
@@ -64,6 +69,7 @@ impl Worker {
             easel: Easel::default(),
             compares: false,
             waiting: None,
+            old: VecDeque::new(),
         }
     }
 
@@ -73,8 +79,12 @@ impl Worker {
         while let Some(mail) = self.inbox.take(step.is_none()) {
             self.read(mail);
             step = self.open.is_some().then(|| self.schedule.next()).flatten();
-            if step.is_none() && self.schedule.is_still() {
-                self.copy();
+            if step.is_none() {
+                // Their memory is for pictures that follow at once.
+                self.old.clear();
+                if self.schedule.is_still() {
+                    self.copy();
+                }
             }
             if let Some(step) = &step
                 && self.inbox.begin(step)
@@ -129,6 +139,7 @@ impl Worker {
         self.schedule.clear(on_device);
         self.easel.clear();
         self.waiting = None;
+        self.old.clear();
         self.gallery.reopen(opened);
         let old = self.open.replace(Open { renderer, label });
         // A large scene takes its time to be freed.
@@ -228,7 +239,11 @@ impl Worker {
                     // Asked after the work: the processor may have stepped in.
                     let machine = open.renderer.machine_for(&settings);
                     let frame = Arc::from(frame);
-                    self.gallery.hang(Shot { side, settings, machine, level, frames, frame }, false);
+                    let shot = Shot { side, settings, machine, level, frames, frame };
+                    if let Some(old) = self.gallery.hang(shot, false) {
+                        self.old.push_back(Arc::clone(&old.frame));
+                        self.old.drain(..self.old.len().saturating_sub(OLD));
+                    }
                 }
             }
             Drawn::Device(frame) => {
@@ -249,7 +264,19 @@ impl Worker {
         Ok(())
     }
 
+    /// Gives the memory of old pictures that nobody shows any more to the next one.
+    fn recycle(&mut self) {
+        let Some(open) = &mut self.open else { return };
+        for frame in std::mem::take(&mut self.old) {
+            match Arc::try_unwrap(frame) {
+                Ok(frame) => open.renderer.recycle(frame),
+                Err(shown) => self.old.push_back(shown),
+            }
+        }
+    }
+
     fn render(&mut self, step: &Step) {
+        self.recycle();
         let Some(open) = &mut self.open else { return };
         self.schedule.begin();
         let (outbox, side) = (&self.outbox, step.side);

@@ -142,6 +142,7 @@ impl Exporter<'_> {
             let share = [number, number + 1].map(|done| done as f32 / frames as f32);
             let frame = self.render(&settings, share)?;
             take(self, number, &settings, &frame)?;
+            self.renderer.recycle(frame);
             interruption::check(self.cancel)?;
         }
         Ok(())
