@@ -181,3 +181,13 @@ fn agreement_counts_what_differs() {
     let error = ours.agreement(&Hits::default(), RayKind::Any).unwrap_err().to_string();
     assert!(error.contains("hits of 0 rays, not of the 6"), "{error}");
 }
+
+#[cfg(unix)]
+#[test]
+fn pipes_are_refused_without_waiting() {
+    let folder = tempfile::tempdir().unwrap();
+    let pipe = folder.path().join("hits.hits");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let error = format!("{:#}", Hits::read(&pipe).unwrap_err());
+    assert!(error.contains("is no regular file"), "{error}");
+}

@@ -22,10 +22,11 @@ pub(super) struct Words {
 impl Words {
     /// Opens the file at `path`, which is to begin with `magic` and the version.
     pub(super) fn open(path: &Path, magic: &[u8; 4]) -> anyhow::Result<Self> {
-        let file = File::open(path)?;
-        let metadata = file.metadata()?;
+        // Before it is opened: a pipe would wait for somebody to write into it.
+        let metadata = std::fs::metadata(path)?;
         ensure!(metadata.is_file(), "is no regular file");
-        let length = metadata.len();
+        let file = File::open(path)?;
+        let length = file.metadata()?.len();
         let mut file = BufReader::with_capacity(1 << 16, file);
         let mut found = [0; 4];
         let is_whole = file.read_exact(&mut found).is_ok();
