@@ -26,3 +26,22 @@ pub struct View {
     /// All lights that shine.
     pub lights: Vec<Light>,
 }
+
+impl View {
+    /// What `camera` sees with near-field radius `radius`, in scene units, and nothing else said: μ(d) = d/R, near radiance of
+    /// all hits within R, white ambient light, a black background, no lights, and rays of a scene whose size is that of a room.
+    #[must_use]
+    pub const fn new(camera: Camera, radius: f32) -> Self {
+        Self {
+            camera,
+            camera_origin: String::new(),
+            radius,
+            openness: Openness::Power { radius, exponent: 1.0 },
+            near_limit: radius,
+            ambient: Vec3::ONE,
+            background: Vec3::ZERO,
+            offset: RayOffset::UNIT,
+            lights: Vec::new(),
+        }
+    }
+}

@@ -12,8 +12,6 @@ use ambray_core::{
     camera::Camera,
     control::Control,
     frame::StageTimes,
-    offset::RayOffset,
-    openness::Openness,
     settings::{Settings, Size},
     trace::{Hit, Ray, Trace, World},
     view::View,
@@ -42,17 +40,7 @@ impl Atrium {
         let seen = &scene.cameras[0];
         let camera = Camera::new(seen.position, seen.forward, seen.up, seen.projection, SIZE.0, SIZE.1);
         let radius = scene.radius.unwrap_or(1.0);
-        let view = View {
-            camera,
-            camera_origin: String::new(),
-            radius,
-            openness: Openness::Power { radius, exponent: 1.0 },
-            near_limit: radius,
-            ambient: Vec3::ONE,
-            background: Vec3::ZERO,
-            offset: RayOffset::UNIT,
-            lights: scene.lights.clone(),
-        };
+        let view = View { lights: scene.lights.clone(), ..View::new(camera, radius) };
         let settings = Settings { size: Size { width: SIZE.0, height: SIZE.1 }, ..Settings::default() };
         Self { backend: CpuBackend::new(Arc::new(scene), BuildOptions::default()), view, settings }
     }

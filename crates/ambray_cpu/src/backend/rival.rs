@@ -75,11 +75,8 @@ fn plane(openness: &[f32]) -> Vec<Vec4> {
 mod tests {
     use std::sync::Arc;
 
-    use ambray_core::{
-        camera::Camera, offset::RayOffset, openness::Openness, sampling::SampleSets, settings::Size,
-    };
+    use ambray_core::{camera::Camera, sampling::SampleSets, settings::Size};
     use ambray_scene::atrium::atrium;
-    use glam::Vec3;
 
     use super::*;
     use crate::{
@@ -91,24 +88,9 @@ mod tests {
     fn rays_of_a_method_are_booked() {
         let (size, scene) = (Size { width: 20, height: 12 }, atrium());
         let seen = &scene.cameras[0];
-        let view = View {
-            camera: Camera::new(
-                seen.position,
-                seen.forward,
-                seen.up,
-                seen.projection,
-                size.width,
-                size.height,
-            ),
-            camera_origin: String::new(),
-            radius: 1.0,
-            openness: Openness::Power { radius: 1.0, exponent: 1.0 },
-            near_limit: 1.0,
-            ambient: Vec3::ONE,
-            background: Vec3::ZERO,
-            offset: RayOffset::UNIT,
-            lights: Vec::new(),
-        };
+        let (width, height) = (size.width, size.height);
+        let camera = Camera::new(seen.position, seen.forward, seen.up, seen.projection, width, height);
+        let view = View::new(camera, 1.0);
         let backend = CpuBackend::new(Arc::new(scene), BuildOptions::default());
         for method in [Method::Hybrid, Method::Gtao] {
             let settings = Settings { size, method, ..Settings::default() };

@@ -6,8 +6,6 @@ use ambray_core::{
     control::{Cancelled, Control},
     frame::GBufferPixel,
     gather::{GatherParams, GatherScratch, Gathered, ShadedPoint, gather},
-    offset::RayOffset,
-    openness::Openness,
     sampling::{PixelKey, SampleSets},
     settings::{Method, Sampling, ScreenQuality, Sequence, Settings},
     trace::{Diffuse, Hit, Motion, Ray, Trace, World},
@@ -152,17 +150,7 @@ pub struct Seen {
 
 /// `scene` as `camera` sees it, with near-field radius `radius`, μ(d) = d/R and `settings`.
 pub fn see(scene: &Scene, camera: Camera, radius: f32, settings: &Settings) -> Seen {
-    let view = View {
-        camera,
-        camera_origin: String::new(),
-        radius,
-        openness: Openness::Power { radius, exponent: 1.0 },
-        near_limit: radius,
-        ambient: Vec3::ONE,
-        background: Vec3::ZERO,
-        offset: RayOffset::UNIT,
-        lights: Vec::new(),
-    };
+    let view = View::new(camera, radius);
     let gbuffer = scene.gbuffer(&camera);
     let screen = Screen::new(&gbuffer, &view, settings);
     Seen { gbuffer, screen, view }

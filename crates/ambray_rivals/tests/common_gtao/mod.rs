@@ -6,7 +6,6 @@ use ambray_core::{
     camera::{Camera, Projection},
     control::Control,
     frame::GBufferPixel,
-    offset::RayOffset,
     openness::Openness,
     settings::{Method, ScreenQuality, Settings},
     view::View,
@@ -81,17 +80,7 @@ pub fn screen(camera: Camera, shapes: &[Shape], radius: f32, settings: &Settings
             });
         }
     }
-    let view = View {
-        camera,
-        camera_origin: String::new(),
-        radius,
-        openness: Openness::Step { radius },
-        near_limit: 0.0,
-        ambient: Vec3::ONE,
-        background: Vec3::ZERO,
-        offset: RayOffset::UNIT,
-        lights: Vec::new(),
-    };
+    let view = View { openness: Openness::Step { radius }, near_limit: 0.0, ..View::new(camera, radius) };
     Screen::new(&gbuffer, &view, settings)
 }
 

@@ -5,8 +5,6 @@ use std::sync::Arc;
 use ambray_core::{
     camera::{Camera, Projection},
     control::Control,
-    offset::RayOffset,
-    openness::Openness,
     settings::Settings,
     view::View,
 };
@@ -109,22 +107,6 @@ impl Values {
 
 /// A view, for functions of the defaults.
 pub(crate) fn view() -> View {
-    View {
-        camera: Camera::new(
-            Vec3::ZERO,
-            Vec3::NEG_Z,
-            Vec3::Y,
-            Projection::Perspective { vertical_fov: 1.0 },
-            4,
-            4,
-        ),
-        camera_origin: String::new(),
-        radius: 1.0,
-        openness: Openness::Power { radius: 1.0, exponent: 1.0 },
-        near_limit: 1.0,
-        ambient: Vec3::ONE,
-        background: Vec3::ZERO,
-        offset: RayOffset::UNIT,
-        lights: Vec::new(),
-    }
+    let projection = Projection::Perspective { vertical_fov: 1.0 };
+    View::new(Camera::new(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, projection, 4, 4), 1.0)
 }
