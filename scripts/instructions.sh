@@ -27,7 +27,7 @@ fi
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 # A frame is what a run of three has more than a run of one, half of it: loading and building fall out.
-frame=(bench atrium --backend cpu --isa avx2 --threads 1 --size 96x54 --spp 8 --thin sheet --warmup 0 --quiet)
+frame=(bench atrium --backend cpu --isa avx2 --threads 1 --size 96x54 --spp 8 --thin sheet --packets always --warmup 0 --quiet)
 for frames in 1 3; do
   valgrind --quiet --tool=callgrind --callgrind-out-file="$work/$frames.out" "$ambray" "${frame[@]}" --frames "$frames" \
     >/dev/null 2>"$work/$frames.log" || { cat "$work/$frames.log" >&2; die "the program failed under valgrind"; }

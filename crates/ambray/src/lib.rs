@@ -39,7 +39,7 @@ pub use ambray_core::{
     view::View,
 };
 pub use ambray_cpu as cpu;
-pub use ambray_cpu::{BuildOptions, Isa, Quality, Width};
+pub use ambray_cpu::{BuildOptions, Isa, Packets, Quality, Width};
 pub use ambray_scene as scene;
 pub use ambray_vulkan as vulkan;
 pub use ambray_vulkan::Device;

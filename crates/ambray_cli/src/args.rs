@@ -29,7 +29,7 @@ pub use ambray_files::{Format, Rate};
 pub use backend::{Backend, BackendArgs, DeviceArgs, Grouping, GroupingArgs, Trace};
 pub use compare::CompareArgs;
 pub use diff::DiffArgs;
-pub use rays::{KernelArgs, Kernels, Quality, RaysArgs};
+pub use rays::{KernelArgs, Kernels, Packets, Quality, RaysArgs};
 pub use sequence::{Frames, SequenceArgs};
 pub use view::ViewArgs;
 

@@ -3,7 +3,7 @@
 use std::hint::black_box;
 
 use ambray_core::trace::{Hit, Ray, Trace};
-use ambray_cpu::{BuildOptions, Isa, Opaque, Quality, Tracer};
+use ambray_cpu::{BuildOptions, Isa, Opaque, Packets, Quality, Tracer};
 use ambray_scene::{Instance, Mesh, Scene};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::{Affine3A, Vec2, Vec3};
@@ -94,10 +94,10 @@ fn trace(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("trace");
     group.throughput(Throughput::Elements(rays.len() as u64)).sample_size(20);
     for isa in Isa::ALL.into_iter().filter(|isa| isa.is_available()) {
-        for packets in [false, true] {
+        for packets in [Packets::Never, Packets::Always] {
             let options = BuildOptions { isa: Some(isa), packets, ..BuildOptions::default() };
             let tracer = Tracer::build(&scene, Opaque, options);
-            let name = if packets { "packets" } else { "single" };
+            let name = if packets == Packets::Always { "packets" } else { "single" };
             group.bench_function(BenchmarkId::new(format!("closest/{name}"), isa.name()), |bencher| {
                 bencher.iter(|| tracer.closest_hits(black_box(&rays), &mut hits));
             });

@@ -14,12 +14,13 @@ mod options;
 mod parts;
 pub mod rays;
 mod shapes;
+mod speeds;
 mod stats;
 mod tracer;
 
 pub use alpha::{AlphaTest, Opaque};
 pub use backend::{BackendError, CpuBackend, CpuWorld};
 pub use isa::Isa;
-pub use options::{BuildOptions, Quality, Width};
+pub use options::{BuildOptions, Packets, Quality, Width};
 pub use stats::Stats;
 pub use tracer::Tracer;

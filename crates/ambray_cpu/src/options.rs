@@ -14,8 +14,8 @@ pub struct BuildOptions {
     pub isa: Option<Isa>,
     /// Children of a node; `None` takes the default.
     pub width: Option<Width>,
-    /// Whether rays of a batch are traced in packets of 16 where they share directions. Default true.
-    pub packets: bool,
+    /// Whether rays of a batch are traced in packets of 16 where they share directions.
+    pub packets: Packets,
     /// Triangles that baked copies of meshes with several instances may have, all together. Default
     /// [`Self::BAKE_BUDGET`]; 0 bakes no such mesh, [`u64::MAX`] all.
     ///
@@ -55,7 +55,7 @@ impl BuildOptions {
             quality,
             isa: None,
             width: None,
-            packets: true,
+            packets: Packets::Measured,
             bake_budget: Self::BAKE_BUDGET,
             updates: Updates::DEFAULT,
         }
@@ -66,6 +66,24 @@ impl Default for BuildOptions {
     fn default() -> Self {
         Self::balanced()
     }
+}
+
+/// When rays go in packets.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Packets {
+    /// Where that has turned out to be quicker: now and then a batch is traced half in packets and half ray by ray. Answers do
+    /// not depend on it, but what is done, instruction by instruction, does on the time.
+    #[default]
+    Measured,
+    /// In every batch.
+    Always,
+    /// Each ray goes alone.
+    Never,
+}
+
+impl Packets {
+    /// All choices.
+    pub const ALL: [Self; 3] = [Self::Measured, Self::Always, Self::Never];
 }
 
 /// Effort spent on a tree.

@@ -9,7 +9,8 @@ use ambray_scene::Scene;
 use crate::kernel::{self, Any, Closest, Query};
 use crate::levels::Levels;
 use crate::shapes::Shapes;
-use crate::{AlphaTest, BuildOptions, Isa, Opaque, Stats, Width};
+use crate::speeds::{Parts, Speeds, Way};
+use crate::{AlphaTest, BuildOptions, Isa, Opaque, Packets, Stats, Width};
 
 /// Traces batches of rays through a scene.
 ///
@@ -41,6 +42,10 @@ struct Core {
     isa: Isa,
     options: BuildOptions,
     stats: Stats,
+    /// Of closest hits.
+    closest: Speeds,
+    /// Of any hits.
+    any: Speeds,
 }
 
 #[derive(Debug)]
@@ -105,7 +110,7 @@ impl Core {
         let stats = Self::measure(&trees, shapes.as_ref());
         let stats = Stats { isa, width, build_time: start.elapsed(), ..stats };
         log::debug!("{}: {stats:?}", scene.name);
-        Self { trees, shapes, isa, options, stats }
+        Self { trees, shapes, isa, options, stats, closest: Speeds::default(), any: Speeds::default() }
     }
 
     fn update(&mut self, scene: &Scene) -> PoseStats {
@@ -143,21 +148,48 @@ impl Core {
     }
 
     fn closest_hits(&self, alpha: &dyn AlphaTest, rays: &[Ray], hits: &mut [Hit]) {
-        self.batch::<Closest>(alpha, rays, hits);
+        self.batch::<Closest>(&self.closest, alpha, rays, hits);
         if let Some(shapes) = &self.shapes {
             shapes.closest_hits(alpha, rays, hits);
         }
     }
 
     fn any_hits(&self, alpha: &dyn AlphaTest, rays: &[Ray], blocked: &mut [bool]) {
-        self.batch::<Any>(alpha, rays, blocked);
+        self.batch::<Any>(&self.any, alpha, rays, blocked);
         if let Some(shapes) = &self.shapes {
             shapes.any_hits(alpha, rays, blocked);
         }
     }
 
-    fn batch<Q: Query>(&self, alpha: &dyn AlphaTest, rays: &[Ray], answers: &mut [Q::Answer]) {
-        let packets = self.options.packets;
+    fn batch<Q: Query>(
+        &self,
+        speeds: &Speeds,
+        alpha: &dyn AlphaTest,
+        rays: &[Ray],
+        answers: &mut [Q::Answer],
+    ) {
+        let sort = match self.options.packets {
+            Packets::Measured => speeds.sort(rays),
+            Packets::Always => return self.trace::<Q>(alpha, true, rays, answers),
+            Packets::Never => return self.trace::<Q>(alpha, false, rays, answers),
+        };
+        let Some(sort) = sort else { return self.trace::<Q>(alpha, true, rays, answers) };
+        match sort.next(rays.len()) {
+            Way::Packets => self.trace::<Q>(alpha, true, rays, answers),
+            Way::Single => self.trace::<Q>(alpha, false, rays, answers),
+            Way::Compare(Parts { starts: [first, second], packets }) => {
+                let parts = [0..first, first..second, second..rays.len()];
+                let [_, first, second] = [0, 1, 2].map(|i| {
+                    let (part, start) = (parts[i].clone(), Instant::now());
+                    self.trace::<Q>(alpha, packets[i], &rays[part.clone()], &mut answers[part.clone()]);
+                    (start.elapsed(), part.len())
+                });
+                if packets[1] { sort.learn(first, second) } else { sort.learn(second, first) }
+            }
+        }
+    }
+
+    fn trace<Q: Query>(&self, alpha: &dyn AlphaTest, packets: bool, rays: &[Ray], answers: &mut [Q::Answer]) {
         match &self.trees {
             Trees::Eight(levels) => {
                 kernel::batch::<8, Q>(self.isa, &levels.view(alpha, packets), rays, answers);

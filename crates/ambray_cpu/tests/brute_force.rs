@@ -3,7 +3,7 @@
 mod common;
 
 use ambray_core::trace::{Hit, Ray, Trace};
-use ambray_cpu::{AlphaTest, BuildOptions, Isa, Opaque, Quality, Tracer, Width};
+use ambray_cpu::{AlphaTest, BuildOptions, Isa, Opaque, Packets, Quality, Tracer, Width};
 use ambray_scene::{Instance, Scene, animation::Updates};
 use common::{BruteForce, Random, random_rays, random_triangles, scene, soup};
 use glam::{Affine3A, Mat3, Quat, Vec3};
@@ -14,7 +14,7 @@ fn all_options() -> Vec<BuildOptions> {
     for quality in Quality::ALL {
         for isa in Isa::ALL.into_iter().filter(|isa| isa.is_available()) {
             for width in Width::ALL {
-                for packets in [false, true] {
+                for packets in Packets::ALL {
                     let (isa, width, bake_budget) = (Some(isa), Some(width), 0);
                     let updates = Updates::default();
                     all.push(BuildOptions { quality, isa, width, packets, bake_budget, updates });

@@ -9,7 +9,7 @@ use ambray_core::{
     shape::Shape,
     trace::{Hit, Ray, Trace},
 };
-use ambray_cpu::{AlphaTest, BuildOptions, Opaque, Tracer, Width};
+use ambray_cpu::{AlphaTest, BuildOptions, Opaque, Packets, Tracer, Width};
 use ambray_scene::{
     Instance, Mesh, Motion, Scene, ShapeInstance,
     animation::{Deformer, Rig, UpdatePolicy, Updates},
@@ -25,7 +25,7 @@ fn all_options() -> Vec<BuildOptions> {
     let mut all = Vec::new();
     for policy in POLICIES {
         for width in Width::ALL {
-            for packets in [false, true] {
+            for packets in [Packets::Never, Packets::Always] {
                 let updates = Updates { policy, poses: 3, ..Updates::default() };
                 let (width, bake_budget) = (Some(width), 0);
                 all.push(BuildOptions { width, packets, bake_budget, updates, ..BuildOptions::default() });

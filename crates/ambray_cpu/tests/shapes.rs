@@ -4,7 +4,7 @@ mod common;
 
 use ambray_core::shape::{Shape, SignedDistanceField};
 use ambray_core::trace::{Hit, Ray, Trace};
-use ambray_cpu::{AlphaTest, BuildOptions, Isa, Opaque, Tracer, Width};
+use ambray_cpu::{AlphaTest, BuildOptions, Isa, Opaque, Packets, Tracer, Width};
 use ambray_scene::{Scene, ShapeInstance};
 use common::{Random, scene, soup};
 use glam::{Affine3A, Quat, Vec3};
@@ -111,7 +111,7 @@ fn the_tree_finds_what_a_loop_finds() {
             }
         }
         for isa in Isa::ALL.into_iter().filter(|isa| isa.is_available()) {
-            for (width, packets) in [(Width::Eight, true), (Width::Sixteen, false)] {
+            for (width, packets) in [(Width::Eight, Packets::Always), (Width::Sixteen, Packets::Never)] {
                 let options =
                     BuildOptions { isa: Some(isa), width: Some(width), packets, ..BuildOptions::default() };
                 let (hits, blocked) = trace(&scene, Sieve, options, &rays);

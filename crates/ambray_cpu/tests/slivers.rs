@@ -6,7 +6,7 @@ use ambray_core::{
     offset::RayOffset,
     trace::{Hit, Ray, Trace},
 };
-use ambray_cpu::{BuildOptions, Opaque, Tracer};
+use ambray_cpu::{BuildOptions, Opaque, Packets, Tracer};
 use ambray_scene::Mesh;
 use common::{Random, scene};
 use glam::{Quat, Vec3};
@@ -46,7 +46,7 @@ fn check(random: &mut Random, corners: [Vec3; 3]) {
         }
     }
     let mesh = Mesh { positions: corners.to_vec(), triangles: vec![[0, 1, 2]], ..Mesh::default() };
-    for packets in [false, true] {
+    for packets in [Packets::Never, Packets::Always] {
         let tracer = Tracer::build(
             &scene(vec![mesh.clone()]),
             Opaque,

@@ -3,7 +3,7 @@
 mod common;
 
 use ambray_core::trace::{Hit, Ray, Trace};
-use ambray_cpu::{BuildOptions, Opaque, Tracer};
+use ambray_cpu::{BuildOptions, Opaque, Packets, Tracer};
 use ambray_scene::Mesh;
 use common::{Random, scene};
 use glam::Vec3;
@@ -12,7 +12,7 @@ use glam::Vec3;
 #[track_caller]
 fn check(mesh: Mesh, rays: &[Ray]) {
     let scene = scene(vec![mesh]);
-    for packets in [false, true] {
+    for packets in [Packets::Never, Packets::Always] {
         let tracer = Tracer::build(&scene, Opaque, BuildOptions { packets, ..BuildOptions::fast_build() });
         let mut hits = vec![Hit::MISS; rays.len()];
         tracer.closest_hits(rays, &mut hits);

@@ -86,8 +86,9 @@ With --rays, threads trace the rays of a frame and do nothing else, tile by tile
   ambient                    the first batch, closest hits
   chords-paper               the second batch of --thin paper, any hits
   chords-sheet               the second batch of --thin sheet, closest hits
-Each is traced in packets as the frame would (traced), in packets sorted by sample class and number of the ray \
-(deinterleaved), and one by one (pixel), by each instruction set. Rates are millions of rays a second of the time that the \
+Each is traced as the frame would, in packets or one by one, whichever turns out to be quicker (measured), in packets only, in \
+the order of the frame (traced) or sorted by sample class and number of the ray (deinterleaved), and one by one \
+(single, pixel), by each instruction set. Rates are millions of rays a second of the time that the \
 busiest thread ran, medians over the rounds with the lowest and highest; other programs hardly matter to them.
   The triangles are those of the scene in world space. Those of masked and blended materials are left out of the files, while \
 frames see them; --opaque takes them from both.

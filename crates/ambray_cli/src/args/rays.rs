@@ -86,6 +86,9 @@ pub struct KernelArgs {
     /// machine; with --rays all that it has]
     #[arg(long, value_enum, value_name = "ISA", value_delimiter = ',', help_heading = "Backend")]
     pub isa: Vec<Kernels>,
+    /// When the processor's rays go in packets; not with --rays, where each way is measured
+    #[arg(long, value_enum, value_name = "WHEN", help_heading = "Backend")]
+    pub packets: Option<Packets>,
     /// Leave out all surfaces whose materials are masked or blended
     #[arg(long, help_heading = "Backend")]
     pub opaque: bool,
@@ -110,6 +113,29 @@ impl Kernels {
             Self::Portable => Isa::Portable,
             Self::Avx2 => Isa::Avx2,
             Self::Avx512 => Isa::Avx512,
+        }
+    }
+}
+
+/// Value of `--packets`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Packets {
+    /// Where that has turned out to be quicker (the default)
+    Measured,
+    /// In every batch of rays
+    Always,
+    /// Each ray goes alone
+    Never,
+}
+
+impl Packets {
+    /// What the tracer calls it.
+    #[must_use]
+    pub const fn packets(self) -> ambray::Packets {
+        match self {
+            Self::Measured => ambray::Packets::Measured,
+            Self::Always => ambray::Packets::Always,
+            Self::Never => ambray::Packets::Never,
         }
     }
 }
@@ -161,6 +187,8 @@ mod tests {
         for (kernels, isa) in Kernels::value_variants().iter().zip(Isa::ALL) {
             assert_eq!(Kernels::from_str(isa.name(), false), Ok(*kernels));
         }
+        let packets: Vec<_> = Packets::value_variants().iter().map(|packets| packets.packets()).collect();
+        assert_eq!(packets, ambray::Packets::ALL);
         assert_eq!(Quality::ALL.map(Quality::quality), ambray::Quality::ALL);
         for quality in Quality::ALL {
             assert_eq!(Quality::from_str(quality.name(), false), Ok(quality));

@@ -23,7 +23,7 @@ use super::{
     thin_cost::{self, ThinCost},
 };
 use crate::{
-    args::{BenchArgs, SettingsArgs},
+    args::{BenchArgs, Packets, SettingsArgs},
     machine::Machine,
     progress::Progress,
     report::{
@@ -75,6 +75,7 @@ pub fn run(args: &BenchArgs) -> anyhow::Result<()> {
     check_animate(args)?;
     if args.rays.rays.is_none() {
         options.build.isa = only_isa(args)?;
+        options.build.packets = args.kernels.packets.map_or_else(Default::default, Packets::packets);
     }
     let target = args.output.as_deref().map(Target::of);
     let saved = args.settings.save_settings.as_deref().map(Target::of);

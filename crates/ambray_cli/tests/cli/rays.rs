@@ -75,13 +75,20 @@ fn rays_of_a_frame_are_written_and_measured() {
             assert!(0.0 < of("min") && of("min") <= of("median") && of("median") <= of("max"), "{rate}");
         }
     }
-    // Two of four rays make six pairs. Each instruction set has two modes: packets, and ray by ray.
+    // Two of four rays make six pairs. Each instruction set has three modes: what is quicker, packets, and ray by ray.
     assert_eq!(word(&bench.read("rays/chords-paper.rays"), 5), 6);
     let rates = batch("ambient")["rates"].clone();
     let portable: Vec<_> =
         rates.as_array().expect("a list").iter().filter(|r| r["isa"] == "portable").collect();
     let modes: Vec<_> = portable.iter().map(|r| (r["mode"].as_str(), r["order"].as_str())).collect();
-    assert_eq!(modes, [(Some("packets"), Some("traced")), (Some("single"), Some("pixel"))]);
+    assert_eq!(
+        modes,
+        [
+            (Some("measured"), Some("traced")),
+            (Some("packets"), Some("traced")),
+            (Some("single"), Some("pixel"))
+        ]
+    );
     let builds = report["builds"].as_array().expect("a list");
     assert!(builds.iter().any(|b| b["quality"] == "best-trace" && b["width"] == 16), "{builds:?}");
     assert!(builds.iter().all(|b| b["bytes_per_triangle"].as_f64().is_some_and(|bytes| bytes > 0.0)));

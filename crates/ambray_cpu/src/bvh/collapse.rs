@@ -38,7 +38,7 @@ impl Costs {
 }
 
 /// See [`Costs::storage`].
-const STORAGE: f32 = 0.4;
+const STORAGE: f32 = 0.7;
 
 /// Subtrees that threads take one at a time; enough that none of them is a bottleneck.
 const SUBTREES: usize = 512;

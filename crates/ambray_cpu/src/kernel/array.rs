@@ -85,6 +85,10 @@ impl<const W: usize> Lanes<W> for Array<W> {
         Self(std::array::from_fn(|i| if mask >> i & 1 != 0 { a.0[i] } else { b.0[i] }))
     }
     #[inline(always)]
+    fn where_le(a: Self, b: Self, x: Self, y: Self) -> Self {
+        Self::select(a.le(b), x, y)
+    }
+    #[inline(always)]
     fn put(self, mask: u32, into: &mut [f32; W]) {
         *into = Self::select(mask, self, Self(*into)).0;
     }

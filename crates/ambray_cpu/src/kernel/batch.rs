@@ -12,6 +12,17 @@ use super::{Query, Scene, cut, packet, single, triangle};
 /// Rays of a group that is worth a packet of its own; those of others look for company in the whole batch.
 const TOGETHER: u32 = 8;
 
+/// Numbers of lanes.
+const COUNTED: [u32; LANES] = {
+    let mut counted = [0; LANES];
+    let mut lane = 0;
+    while lane < LANES {
+        counted[lane] = lane as u32;
+        lane += 1;
+    }
+    counted
+};
+
 /// Answers `rays`.
 #[inline(always)]
 pub(super) fn answer<const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
@@ -19,6 +30,7 @@ pub(super) fn answer<const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
     rays: &[Ray],
     answers: &mut [Q::Answer],
 ) {
+    answers.fill(Q::answer(false, || Hit::MISS));
     let cut = scene.baked.nodes.first().map(|_| cut::root::<W, R>(&scene.baked.nodes, rays));
     let scene = &Scene { entry: cut.as_ref(), ..*scene };
     let mut single = vec![MaybeUninit::uninit(); scene.stack];
@@ -30,7 +42,9 @@ pub(super) fn answer<const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
                 if bundle.able >> lane & 1 != 0 {
                     hit = single::trace::<W, L, Q>(scene, ray, &bundle.ray(lane), &mut single);
                 }
-                *answer = Q::answer(hit.is_hit(), || triangle::named(&scene.baked.names, hit));
+                if hit.is_hit() {
+                    *answer = Q::answer(true, || triangle::named(&scene.baked.names, hit));
+                }
             }
         }
         return;
@@ -43,36 +57,30 @@ pub(super) fn answer<const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
 
 /// Answers the rays that agree with their neighbours in the batch; the others become loose.
 #[inline(always)]
-fn in_order<const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
-    scene: &Scene<'_, W>,
+fn in_order<'a, const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
+    scene: &Scene<'a, W>,
     rays: &[Ray],
     answers: &mut [Q::Answer],
-    scratch: &mut packet::Scratch,
+    scratch: &mut packet::Scratch<'a, W>,
     loose: &mut Loose,
 ) {
     let mut first = 0;
     while first < rays.len() {
         let (bundle, count) = Bundle::next::<R>(&rays[first..]);
-        let (rays, answers) = (&rays[first..][..count], &mut answers[first..][..count]);
-        for (lane, answer) in answers.iter_mut().enumerate() {
-            if bundle.able >> lane & 1 == 0 {
-                *answer = Q::answer(false, || Hit::MISS);
-            }
+        let rays = &rays[first..][..count];
+        let mut places = COUNTED;
+        for place in &mut places {
+            *place += first as u32;
         }
         let mut waiting = bundle.able;
         while waiting != 0 {
             let group = bundle.group(waiting);
             waiting &= !group;
             if group.count_ones() >= TOGETHER {
-                packet::trace::<W, L, R, Q>(scene, &bundle, group, rays, answers, scratch);
+                packet::trace::<W, L, R, Q>(scene, &bundle, group, rays, (answers, &places), scratch);
                 continue;
             }
-            let mut lanes = group;
-            while lanes != 0 {
-                let lane = lanes.trailing_zeros() as usize % LANES;
-                lanes &= lanes - 1;
-                loose.push(first + lane, &bundle, lane);
-            }
+            loose.push(first, &bundle, group);
         }
         first += count;
     }
@@ -80,30 +88,28 @@ fn in_order<const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
 
 /// Answers the loose rays, those of like directions together.
 #[inline(always)]
-fn by_direction<const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
-    scene: &Scene<'_, W>,
+fn by_direction<'a, const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
+    scene: &Scene<'a, W>,
     rays: &[Ray],
     answers: &mut [Q::Answer],
-    scratch: &mut packet::Scratch,
+    scratch: &mut packet::Scratch<'a, W>,
     loose: &mut Loose,
 ) {
     let mut order = loose.sort();
     while let Some(together) = Loose::take::<LANES>(&mut order) {
         let mut some = [rays[together[0].index as usize]; LANES];
-        for (ray, loose) in some.iter_mut().zip(together) {
+        let mut places = [0; LANES];
+        for ((ray, place), loose) in some.iter_mut().zip(&mut places).zip(together) {
             *ray = rays[loose.index as usize];
+            *place = loose.index;
         }
         let some = &some[..together.len()];
         let bundle = Bundle::of::<R>(some);
-        let mut found = [Q::answer(false, || Hit::MISS); LANES];
         let mut waiting = bundle.able;
         while waiting != 0 {
             let group = bundle.group(waiting);
             waiting &= !group;
-            packet::trace::<W, L, R, Q>(scene, &bundle, group, some, &mut found, scratch);
-        }
-        for (loose, answer) in together.iter().zip(found) {
-            answers[loose.index as usize] = answer;
+            packet::trace::<W, L, R, Q>(scene, &bundle, group, some, (answers, &places), scratch);
         }
     }
 }

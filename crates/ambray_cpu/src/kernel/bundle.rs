@@ -34,6 +34,28 @@ impl Numbers {
     }
 }
 
+#[inline(always)]
+fn abs<R: Rays>(x: R) -> R {
+    x.max(R::splat(0.0).sub(x))
+}
+
+/// As [`Prepared::new`] bounds reciprocals.
+#[inline(always)]
+fn bounded<R: Rays>(reciprocal: R, far: R) -> R {
+    let largest = R::splat(ray::LARGEST_RECIPROCAL);
+    let (zero, steepest) = (R::splat(0.0), largest.div(far));
+    let bound = R::where_le(zero, reciprocal, steepest, zero.sub(steepest));
+    R::where_le(abs(reciprocal).mul(far), largest, reciprocal, bound)
+}
+
+/// As [`slab::padded`].
+#[inline(always)]
+fn padded<R: Rays>(origin: R, reciprocal: R) -> [R; 2] {
+    let at = origin.mul(reciprocal);
+    let pad = abs(at).mul(R::splat(slab::PAD)).add(R::splat(f32::MIN_POSITIVE));
+    [at.add(pad), at.sub(pad)]
+}
+
 /// Up to sixteen rays as structure of arrays, each as [`Prepared`] has it, bit for bit.
 pub(crate) struct Bundle {
     pub(crate) origin: [Numbers; 3],
@@ -84,43 +106,39 @@ impl Bundle {
             &some
         }));
         let (zero, one) = (R::splat(0.0), R::splat(1.0));
-        let (largest, smallest) = (R::splat(f32::MAX), R::splat(f32::MIN));
         // So that there is no −0, which looks the other way.
         let (dx, dy, dz) = (dx.add(zero), dy.add(zero), dz.add(zero));
-        let mut able = zero.lt(t_max);
-        let mut directed = 0;
-        let mut down = [0; 3];
-        let [mut reciprocal, mut enter, mut leave] = [[Numbers::ZERO; 3]; 3];
-        for (axis, (origin, direction)) in [(ox, dx), (oy, dy), (oz, dz)].into_iter().enumerate() {
-            able &= origin.le(largest) & smallest.le(origin) & direction.le(largest) & smallest.le(direction);
-            directed |= direction.lt(zero) | zero.lt(direction);
-            down[axis] = direction.signs();
-            let far = origin.max(zero.sub(origin)).max(one);
-            let steepest = R::splat(ray::LARGEST_RECIPROCAL).div(far);
-            let across = one.div(direction).min(steepest).max(zero.sub(steepest));
-            let at = origin.mul(across);
-            let pad = at.max(zero.sub(at)).mul(R::splat(slab::PAD)).add(R::splat(f32::MIN_POSITIVE));
-            reciprocal[axis] = Numbers::of(across);
-            enter[axis] = Numbers::of(at.add(pad));
-            leave[axis] = Numbers::of(at.sub(pad));
+        // 0, or not a number where one of them is not finite.
+        let lost = ox.sub(ox).add(oy.sub(oy)).add(oz.sub(oz)).add(dx.sub(dx)).add(dy.sub(dy)).add(dz.sub(dz));
+        let (ax, ay, az) = (abs(dx), abs(dy), abs(dz));
+        let able = zero.lt(t_max) & lost.le(zero) & zero.lt(ax.max(ay).max(az));
+        let far = abs(ox).max(abs(oy)).max(abs(oz)).max(one);
+        let (rx, ry, rz) = (one.div(dx), one.div(dy), one.div(dz));
+        let (mut across_x, mut across_y, mut across_z) = (rx, ry, rz);
+        if abs(rx).max(abs(ry)).max(abs(rz)).mul(far).le(R::splat(ray::LARGEST_RECIPROCAL))
+            != u32::from(u16::MAX)
+        {
+            (across_x, across_y, across_z) = (bounded(rx, far), bounded(ry, far), bounded(rz, far));
         }
-        let (x, y, z) = (dx.max(zero.sub(dx)), dy.max(zero.sub(dy)), dz.max(zero.sub(dz)));
-        let along_x = y.le(x) & z.le(x);
-        let along_y = z.le(y) & !along_x;
+        let [enter_x, leave_x] = padded(ox, across_x);
+        let [enter_y, leave_y] = padded(oy, across_y);
+        let [enter_z, leave_z] = padded(oz, across_z);
         // As [`Axis::last`] has it.
-        let x = R::select(along_x, dy, R::select(along_y, dz, dx));
-        let y = R::select(along_x, dz, R::select(along_y, dx, dy));
-        let z = R::select(along_x, dx, R::select(along_y, dy, dz));
+        let (beside, last) = (ay.max(az), az);
+        let x = R::where_le(beside, ax, dy, R::where_le(last, ay, dz, dx));
+        let y = R::where_le(beside, ax, dz, R::where_le(last, ay, dx, dy));
+        let z = R::where_le(beside, ax, dx, R::where_le(last, ay, dy, dz));
+        let along_x = beside.le(ax);
         Self {
             origin: [Numbers::of(ox), Numbers::of(oy), Numbers::of(oz)],
-            reciprocal,
-            enter,
-            leave,
+            reciprocal: [Numbers::of(across_x), Numbers::of(across_y), Numbers::of(across_z)],
+            enter: [Numbers::of(enter_x), Numbers::of(enter_y), Numbers::of(enter_z)],
+            leave: [Numbers::of(leave_x), Numbers::of(leave_y), Numbers::of(leave_z)],
             shear: [Numbers::of(x.div(z)), Numbers::of(y.div(z)), Numbers::of(one.div(z))],
             t_max: Numbers::of(t_max),
-            able: able & directed & ((1_u64 << rays.len()) - 1) as u32,
-            down,
-            longest: [along_x, along_y],
+            able: able & ((1_u64 << rays.len()) - 1) as u32,
+            down: [dx.signs(), dy.signs(), dz.signs()],
+            longest: [along_x, last.le(ay) & !along_x],
         }
     }
 
@@ -172,19 +190,25 @@ impl Bundle {
             largest_limit: limit.largest(),
             changes: 0,
         };
+        // Interleaved rays are parallel on flat surfaces.
+        let mut alike = u32::from(u16::MAX);
+        for axis in 0..3 {
+            let (reciprocal, all) =
+                (self.reciprocal[axis].load::<R>(), R::splat(self.reciprocal[axis].0[first]));
+            alike &= reciprocal.le(all) & all.le(reciprocal);
+        }
+        let are_parallel = group & !alike == 0;
         for axis in 0..3 {
             let (origin, reciprocal) = (&self.origin[axis], &self.reciprocal[axis]);
             // Lanes of other groups are as the first one.
+            let one = reciprocal.0[first];
             let origin: R = R::select(group, origin.load(), R::splat(origin.0[first]));
-            let reciprocal: R = R::select(group, reciprocal.load(), R::splat(reciprocal.0[first]));
             let origins = [origin.smallest(), origin.largest()];
-            // Interleaved rays are parallel on flat surfaces.
-            let parallel = self.reciprocal[axis].0[first];
-            let all = R::splat(parallel);
-            let is_parallel = reciprocal.le(all) & all.le(reciprocal) == u32::from(u16::MAX);
-            let reciprocals = match is_parallel {
-                true => [parallel; 2],
-                false => [reciprocal.smallest(), reciprocal.largest()],
+            let reciprocals = if are_parallel {
+                [one; 2]
+            } else {
+                let reciprocal = R::select(group, reciprocal.load(), R::splat(one));
+                [reciprocal.smallest(), reciprocal.largest()]
             };
             let ([early, late], [small, large]) = match order.down[axis] {
                 false => (origins, reciprocals),

@@ -30,6 +30,8 @@ pub(crate) trait Lanes<const W: usize>: Copy {
     fn lt(self, other: Self) -> u32;
     /// `a` in the lanes of `mask`, `b` elsewhere.
     fn select(mask: u32, a: Self, b: Self) -> Self;
+    /// `x` in the lanes where `a <= b`, `y` elsewhere.
+    fn where_le(a: Self, b: Self, x: Self, y: Self) -> Self;
     /// Writes the lanes of `mask` to `into`.
     fn put(self, mask: u32, into: &mut [f32; W]);
     /// Lanes whose sign bit is set.

@@ -30,10 +30,20 @@ pub(crate) struct Loose {
 }
 
 impl Loose {
-    /// Adds ray `index` of the batch, which is in a lane of `bundle`.
+    /// Adds the rays of `group` of a `bundle` that begins with ray `first` of the batch.
     #[inline(always)]
-    pub(crate) fn push(&mut self, index: usize, bundle: &Bundle, lane: usize) {
-        self.rays.push(LooseRay { cell: cell(bundle, lane), index: index as u32 });
+    pub(crate) fn push(&mut self, first: usize, bundle: &Bundle, group: u32) {
+        // They agree in octant and longest axis.
+        let (order, axes) = bundle.turn(group.trailing_zeros() as usize % LANES);
+        let octant = u32::from(order.down[0]) | u32::from(order.down[1]) << 1 | u32::from(order.down[2]) << 2;
+        let cells = (octant * 3 + axes[2] as u32) * CELLS;
+        let mut lanes = group;
+        while lanes != 0 {
+            let lane = lanes.trailing_zeros() as usize % LANES;
+            lanes &= lanes - 1;
+            let cell = cells + cell(bundle, lane);
+            self.rays.push(LooseRay { cell, index: (first + lane) as u32 });
+        }
     }
 
     /// The rays sorted by cell, by counting; those of one cell keep their order.
@@ -67,14 +77,11 @@ impl Loose {
     }
 }
 
-/// Cell of a ray's direction on a cube around the origin: octant and longest axis first, then a grid in Morton order.
+/// Cell of a ray's direction among those of its octant on a face of a cube around the origin, in Morton order.
 #[inline(always)]
 fn cell(bundle: &Bundle, lane: usize) -> u32 {
-    let (order, axes) = bundle.turn(lane);
-    let octant = u32::from(order.down[0]) | u32::from(order.down[1]) << 1 | u32::from(order.down[2]) << 2;
     // Not above 1: the direction is longest along the last axis.
     let along = |axis: usize| ((bundle.shear[axis].0[lane % LANES].abs() * SIDE as f32) as u32).min(SIDE - 1);
     let (x, y) = (along(0), along(1));
-    let morton = x & 1 | (y & 1) << 1 | (x & 2) << 1 | (y & 2) << 2;
-    (octant * 3 + axes[2] as u32) * CELLS + morton
+    x & 1 | (y & 1) << 1 | (x & 2) << 1 | (y & 2) << 2
 }

@@ -15,16 +15,16 @@ use super::best::Best;
 use super::bundle::{Bundle, LANES, Packet};
 use super::lanes::{Lanes, Rays};
 use super::{Query, Scene, Trunk, leaf, single, slab, triangle};
-use crate::bvh::layout::Child;
+use crate::bvh::layout::{Child, Node};
 
 /// Subtree still to be visited.
 #[derive(Clone, Copy)]
-pub(crate) struct Pending {
+pub(crate) struct Pending<'a, const W: usize> {
+    /// The node that it is a child of, and in which slot.
+    parent: &'a Node<W>,
+    slot: u32,
     /// Bound on the near distance of its box.
     near: f32,
-    /// The node that it is a child of, and in which slot.
-    parent: Child,
-    slot: u32,
     /// The rays that meet its box.
     live: u16,
     /// How often limits had changed by then.
@@ -32,20 +32,20 @@ pub(crate) struct Pending {
 }
 
 /// Scratch memory of a thread.
-pub(crate) struct Scratch {
-    pub(crate) packet: Vec<MaybeUninit<Pending>>,
+pub(crate) struct Scratch<'a, const W: usize> {
+    pub(crate) packet: Vec<MaybeUninit<Pending<'a, W>>>,
     pub(crate) single: Vec<MaybeUninit<u64>>,
 }
 
-/// Answers the rays of a `group` of a bundle.
+/// Answers the rays of a `group` of a bundle that have hits; `places` says where the answer of each lane goes.
 #[inline(always)]
-pub(crate) fn trace<const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
-    scene: &Scene<'_, W>,
+pub(crate) fn trace<'a, const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
+    scene: &Scene<'a, W>,
     bundle: &Bundle,
     group: u32,
     rays: &[Ray],
-    answers: &mut [Q::Answer],
-    scratch: &mut Scratch,
+    (answers, places): (&mut [Q::Answer], &[u32; LANES]),
+    scratch: &mut Scratch<'a, W>,
 ) {
     let mut best = Best::NONE;
     let mut packet = bundle.packet::<R>(group);
@@ -57,7 +57,7 @@ pub(crate) fn trace<const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
         open = walk::<W, L, R, Q>(&trunk, rays, &mut packet, open, &mut best, scratch);
     }
     let has_placed = !scene.placed.nodes.is_empty();
-    let mut lanes = group;
+    let mut lanes = if has_placed { group } else { best.found };
     while lanes != 0 {
         let lane = lanes.trailing_zeros() as usize % LANES;
         lanes &= lanes - 1;
@@ -68,20 +68,20 @@ pub(crate) fn trace<const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
             single::instances::<W, L, Q>(scene, &rays[lane], &prepared, &mut hit, &mut scratch.single);
             is_hit = hit.is_hit();
         }
-        answers[lane] = Q::answer(is_hit, || triangle::named(&scene.baked.names, hit));
+        answers[places[lane] as usize] = Q::answer(is_hit, || triangle::named(&scene.baked.names, hit));
     }
 }
 
 /// Walks the `open` rays of a packet through a tree; they are those without an answer that nothing can change. Returns which
 /// rays are so still.
 #[inline(always)]
-fn walk<const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
-    trunk: &Trunk<'_, W>,
+fn walk<'a, const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
+    trunk: &Trunk<'a, W>,
     rays: &[Ray],
     packet: &mut Packet<'_>,
     mut open: u32,
     best: &mut Best,
-    scratch: &mut Scratch,
+    scratch: &mut Scratch<'a, W>,
 ) -> u32 {
     let tree = trunk.tree;
     let stack = &mut scratch.packet[..];
@@ -135,7 +135,7 @@ fn walk<const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
                 }
                 let near = near[slot];
                 let pending =
-                    Pending { near, parent: child, slot: slot as u32, live, changes: packet.changes };
+                    Pending { near, parent: node, slot: slot as u32, live, changes: packet.changes };
                 let mut at = top;
                 // Where the closest hit is asked for, the nearest come first; the order of the others does not matter.
                 while !Q::ANY && at > bottom {
@@ -162,7 +162,7 @@ fn walk<const W: usize, L: Lanes<W>, R: Rays, Q: Query>(
             if live == 0 {
                 continue;
             }
-            let node = trunk.node(pending.parent);
+            let node = pending.parent;
             let slot = pending.slot as usize % W;
             // Rays that have become shorter may miss it now.
             if !Q::ANY && pending.changes != packet.changes {

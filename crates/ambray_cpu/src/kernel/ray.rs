@@ -4,8 +4,9 @@ use glam::{Affine3A, Vec3};
 
 use super::slab::Slab;
 
-/// Reciprocals of direction components, and their products with the origin, are no larger than this, 2¹²⁶: they are finite,
-/// and 0 · reciprocal is 0 and never NaN. A ray that is so steep stays in its plane.
+/// Reciprocals of direction components are no larger than this, 2¹²⁶, over the largest coordinate of the origin where that is
+/// above 1: they and their products with the origin are finite, and 0 · reciprocal is 0 and never NaN. A ray that is so steep
+/// stays in its plane.
 pub(crate) const LARGEST_RECIPROCAL: f32 = 8.507_059e37;
 
 /// An axis of space; unlike an index it needs no check.
@@ -89,11 +90,12 @@ impl Prepared {
             Axis::Z
         };
         let axes = longest.last();
+        let far = o[0].abs().max(o[1].abs()).max(o[2].abs()).max(1.0);
         let mut slab = [Slab::NONE; 3];
         for axis in 0..3 {
-            let largest = LARGEST_RECIPROCAL / o[axis].abs().max(1.0);
             let r = 1.0 / d[axis];
-            let reciprocal = if r.abs() <= largest { r } else { largest.copysign(d[axis]) };
+            let steepest = (LARGEST_RECIPROCAL / far).copysign(d[axis]);
+            let reciprocal = if r.abs() * far <= LARGEST_RECIPROCAL { r } else { steepest };
             slab[axis] = Slab::new(o[axis], reciprocal);
         }
         let [x, y, z] = axes.map(|axis| d[axis as usize]);

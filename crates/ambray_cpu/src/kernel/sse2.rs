@@ -134,6 +134,18 @@ macro_rules! lanes {
                 out
             }
             #[inline(always)]
+            fn where_le(a: Self, b: Self, x: Self, y: Self) -> Self {
+                let mut out = y;
+                for (i, (out, x)) in out.0.iter_mut().zip(x.0).enumerate() {
+                    // SAFETY: see the module.
+                    *out = unsafe {
+                        let chosen = _mm_cmple_ps(a.0[i], b.0[i]);
+                        _mm_or_ps(_mm_and_ps(chosen, x), _mm_andnot_ps(chosen, *out))
+                    };
+                }
+                out
+            }
+            #[inline(always)]
             fn put(self, mask: u32, into: &mut [f32; $width]) {
                 *into = Self::select(mask, self, Self::load(into)).to_array();
             }

@@ -97,6 +97,11 @@ impl Lanes<8> for Avx2x8 {
         }
     }
     #[inline(always)]
+    fn where_le(a: Self, b: Self, x: Self, y: Self) -> Self {
+        // SAFETY: AVX2 is enabled, see the module.
+        Self(unsafe { _mm256_blendv_ps(y.0, x.0, _mm256_cmp_ps::<_CMP_LE_OQ>(a.0, b.0)) })
+    }
+    #[inline(always)]
     fn put(self, mask: u32, into: &mut [f32; 8]) {
         *into = Self::select(mask, self, Self::load(into)).to_array();
     }
@@ -185,6 +190,10 @@ impl Lanes<16> for Avx2x16 {
         Self(Avx2x8::select(mask, a.0, b.0), Avx2x8::select(mask >> 8, a.1, b.1))
     }
     #[inline(always)]
+    fn where_le(a: Self, b: Self, x: Self, y: Self) -> Self {
+        Self(Avx2x8::where_le(a.0, b.0, x.0, y.0), Avx2x8::where_le(a.1, b.1, x.1, y.1))
+    }
+    #[inline(always)]
     fn put(self, mask: u32, into: &mut [f32; 16]) {
         *into = Self::select(mask, self, Self::load(into)).to_array();
     }
@@ -270,6 +279,11 @@ impl Lanes<16> for Avx512x16 {
     fn select(mask: u32, a: Self, b: Self) -> Self {
         // SAFETY: AVX-512 is enabled, see the module.
         Self(unsafe { _mm512_mask_blend_ps(mask as __mmask16, b.0, a.0) })
+    }
+    #[inline(always)]
+    fn where_le(a: Self, b: Self, x: Self, y: Self) -> Self {
+        // SAFETY: AVX-512 is enabled, see the module.
+        Self(unsafe { _mm512_mask_blend_ps(_mm512_cmp_ps_mask::<_CMP_LE_OQ>(a.0, b.0), y.0, x.0) })
     }
     #[inline(always)]
     fn put(self, mask: u32, into: &mut [f32; 16]) {

@@ -8,7 +8,7 @@ use std::{
 };
 
 use ambray::{
-    BuildOptions, Control, Isa, Width,
+    BuildOptions, Control, Isa, Packets, Width,
     cpu::{
         Opaque, Stats, Tracer,
         rays::{Order, RayBatch, RayKind},
@@ -30,11 +30,11 @@ use crate::{args::Quality, progress::Progress, report::milliseconds, signals};
 pub(super) struct Contender {
     quality: Quality,
     isa: Isa,
-    packets: bool,
+    packets: Packets,
     tracer: Tracer,
 }
 
-/// Builds a tracer for each of `qualities` and `isas`, in packets and one by one.
+/// Builds a tracer for each of `qualities` and `isas`, by measurement, in packets and one by one.
 pub(super) fn contenders(
     scene: &Scene,
     isas: &[Isa],
@@ -44,7 +44,7 @@ pub(super) fn contenders(
     let mut contenders = Vec::new();
     for &quality in qualities {
         for &isa in isas {
-            for packets in [true, false] {
+            for packets in [Packets::Measured, Packets::Always, Packets::Never] {
                 let options = BuildOptions { isa: Some(isa), packets, ..of_quality(quality) };
                 let tracer = build(scene, options, threads)?;
                 contenders.push(Contender { quality, isa, packets, tracer });
@@ -130,7 +130,11 @@ pub(super) fn batch(
         arranged.push(deinterleaved);
     }
     arranged.push(Arranged::new(batch, Order::Pixel));
-    let is_tried = |packets: bool, order| packets != (order == Order::Pixel);
+    let is_tried = |packets, order| match packets {
+        Packets::Measured => order == Order::Traced,
+        Packets::Always => order != Order::Pixel,
+        Packets::Never => order == Order::Pixel,
+    };
     let tasks: Vec<Task<'_>> = contenders
         .iter()
         .flat_map(|contender| {
@@ -168,7 +172,11 @@ pub(super) fn batch(
 
 impl Task<'_> {
     const fn mode(&self) -> &'static str {
-        if self.contender.packets { "packets" } else { "single" }
+        match self.contender.packets {
+            Packets::Measured => "measured",
+            Packets::Always => "packets",
+            Packets::Never => "single",
+        }
     }
 
     fn name(&self) -> String {

@@ -114,6 +114,7 @@ fn check(args: &BenchArgs) -> anyhow::Result<()> {
         ("--cost", args.cost),
         ("--bandwidth", args.bandwidth.is_some()),
         ("--thin-cost", args.thin_cost),
+        ("--packets", args.kernels.packets.is_some()),
         ("--animate", args.animate.animate),
     ];
     if let Some((name, _)) = others.into_iter().find(|(_, given)| *given) {

@@ -81,7 +81,7 @@ pub(super) struct BatchReport {
 pub(super) struct RateReport {
     pub(super) quality: &'static str,
     pub(super) isa: &'static str,
-    /// `packets` or `single`.
+    /// `measured`, `packets` or `single`.
     pub(super) mode: &'static str,
     pub(super) order: &'static str,
     /// By the time that the busiest thread ran.
