@@ -2,12 +2,14 @@
 
 mod looks;
 mod lookup;
+mod mask;
 mod prepared;
 mod taps;
 
 use crate::{mip, srgb};
 
 pub(crate) use looks::Looks;
+pub(crate) use mask::{AlphaPlane, Mask};
 pub(crate) use prepared::{PreparedImage, PreparedTexture};
 
 /// A decoded image with its mip chain, RGBA with 8 bits a channel.

@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec4};
 
 use super::{
-    Filter, Image, ImageLevel, Sampler,
+    Filter, Image, ImageLevel, Sampler, mask,
     taps::{Axis, Taps},
 };
 use crate::srgb;
@@ -58,15 +58,8 @@ impl Sampler {
     #[must_use]
     pub fn alpha_at(&self, image: &Image, uv: Vec2) -> f32 {
         let level = &image.levels[0];
-        let size = [level.width, level.height];
-        let alpha = |texel: usize| srgb::UNIT[usize::from(level.texels[texel][3])];
-        let axes = self.wrap.map(Axis::of);
-        let quad = Quad::around(axes, [axes[0].reduced(uv.x), axes[1].reduced(uv.y)], size, self.mag);
-        let ([a, b, c, d], [right, below]) = (quad.texels, quad.shares);
-        let row = |left: usize, right_one: usize| {
-            if right == 0.0 { alpha(left) } else { lerp(alpha(left), alpha(right_one), right) }
-        };
-        if below == 0.0 { row(a, b) } else { lerp(row(a, b), row(c, d), below) }
+        let size = [level.width as i32, level.height as i32];
+        mask::interpolated(size, self.wrap.map(Axis::of), self.mag.half(), uv, |texel| level.texels[texel][3])
     }
 }
 
@@ -101,7 +94,7 @@ impl Quad {
     /// The texels around the [reduced](Axis::reduced) coordinates `uv` of a level.
     #[inline(always)]
     fn around(axes: [Axis; 2], uv: [f32; 2], size: [u32; 2], filter: Filter) -> Self {
-        let half = if filter == Filter::Linear { 0.5 } else { 0.0 };
+        let half = filter.half();
         let taps = |axis: usize| axes[axis].taps(uv[axis], size[axis] as i32, half);
         let (u, v, width) = (taps(0), taps(1), size[0] as usize);
         let places = |taps: &Taps| [taps.first as usize, taps.second as usize];
@@ -185,11 +178,6 @@ pub(super) fn log2_above_one(x: f32) -> f32 {
     // 1 / ln 2, in two parts.
     const INVERSE: [f32; 2] = [1.442_871_1, -1.760_528_5e-4];
     (low + high) * INVERSE[1] + low * INVERSE[0] + high * INVERSE[0] + exponent as f32
-}
-
-#[inline(always)]
-fn lerp(a: f32, b: f32, share: f32) -> f32 {
-    a + (b - a) * share
 }
 
 #[cfg(test)]

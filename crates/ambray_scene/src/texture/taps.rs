@@ -2,10 +2,10 @@
 //!
 //! Without branches, so that many coordinates can be worked on at once.
 
-use super::Wrap;
+use super::{Filter, Wrap};
 
 /// What is outside the image along an axis: it repeats, unless it is said otherwise.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Axis {
     pub(super) is_mirror: bool,
     pub(super) is_clamp: bool,
@@ -21,6 +21,8 @@ pub(super) struct Taps {
 }
 
 impl Axis {
+    pub(super) const REPEAT: Self = Self { is_mirror: false, is_clamp: false };
+
     #[inline(always)]
     pub(super) fn of(wrap: Wrap) -> Self {
         Self { is_mirror: wrap == Wrap::Mirror, is_clamp: wrap == Wrap::Clamp }
@@ -41,8 +43,8 @@ impl Axis {
         if self.is_clamp { clamped } else { repeated }
     }
 
-    /// The texels around the [reduced](Self::reduced) coordinate `x` of `size` texels, if each is interpolated from its centre
-    /// on, `half` a texel from its edge; for a `half` of 0 the texel that it is in.
+    /// The texels around the [reduced](Self::reduced) coordinate `x` of `size` texels, with the [half](Filter::half) of the
+    /// filter.
     #[inline(always)]
     pub(super) fn taps(self, x: f32, size: i32, half: f32) -> Taps {
         let x = x * size as f32 - half;
@@ -62,6 +64,14 @@ impl Axis {
         // The one that is in the image; in a period of the size of the image that is `within` itself.
         let within = within.min(2 * size - 1 - within);
         if self.is_clamp { index.max(0).min(size - 1) } else { within }
+    }
+}
+
+impl Filter {
+    /// How far from its edge a texel counts alone, texels; 0 where each does all over itself.
+    #[inline(always)]
+    pub(super) fn half(self) -> f32 {
+        if self == Self::Linear { 0.5 } else { 0.0 }
     }
 }
 
