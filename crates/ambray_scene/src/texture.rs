@@ -26,9 +26,9 @@ pub struct Image {
 /// One level of an [`Image`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImageLevel {
-    /// Width in texels, at least 1 and below 2³⁰.
+    /// Width in texels, at least 1 and below 2²³.
     pub width: u32,
-    /// Height in texels, at least 1 and below 2³⁰.
+    /// Height in texels, at least 1 and below 2²³.
     pub height: u32,
     /// Texels row by row from the top, RGBA.
     pub texels: Vec<[u8; 4]>,
@@ -96,10 +96,10 @@ impl Image {
     /// Levels of sRGB images are averaged in linear light and weighted by alpha, others as they are.
     ///
     /// # Panics
-    /// If `texels` does not hold `width` × `height` entries, or if a side is zero or has 2³⁰ texels or more.
+    /// If `texels` does not hold `width` × `height` entries, or if a side is zero or has 2²³ texels or more.
     #[must_use]
     pub fn new(name: String, width: u32, height: u32, texels: Vec<[u8; 4]>, srgb: bool) -> Self {
-        let is_side = |side: u32| (1..1 << 30).contains(&side);
+        let is_side = |side: u32| (1..1 << 23).contains(&side);
         let count = width as usize * height as usize;
         assert!(is_side(width) && is_side(height) && texels.len() == count, "image size");
         let mut levels = vec![ImageLevel { width, height, texels }];

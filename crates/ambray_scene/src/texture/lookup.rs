@@ -2,10 +2,7 @@
 
 use glam::{Vec2, Vec4};
 
-use super::{
-    Filter, Image, ImageLevel, Sampler, mask,
-    taps::{Axis, Taps},
-};
+use super::{Filter, Image, ImageLevel, Sampler, Wrap, mask::AlphaReader, taps::Axes};
 use crate::srgb;
 
 impl Sampler {
@@ -27,14 +24,13 @@ impl Sampler {
     fn sample_as<const SRGB: bool>(&self, image: &Image, uv: Vec2, width: f32) -> Vec4 {
         let decode = image.decoder();
         let blend = self.blend(image.levels.len(), width * image.texels_across());
-        let axes = self.wrap.map(Axis::of);
-        let uv = [axes[0].reduced(uv.x), axes[1].reduced(uv.y)];
-        let read = |level: &ImageLevel| {
-            let quad = Quad::around(axes, uv, [level.width, level.height], blend.filter);
-            quad.value(Encoded::<SRGB>::of(level, decode))
-        };
-        let value = read(&image.levels[blend.fine]);
-        if blend.share == 0.0 { value } else { value.lerp(read(&image.levels[blend.coarse]), blend.share) }
+        let (fine, coarse) = (&image.levels[blend.fine], &image.levels[blend.coarse]);
+        let [fine_quad, coarse_quad] = Quad::pair(self.wrap, uv, [fine, coarse], blend.filter);
+        let value = fine_quad.value(Encoded::<SRGB>::of(fine, decode));
+        if blend.share == 0.0 {
+            return value;
+        }
+        value.lerp(coarse_quad.value(Encoded::<SRGB>::of(coarse, decode)), blend.share)
     }
 
     /// Which levels of `levels` a footprint of `texels` texels of the full image asks for.
@@ -58,8 +54,7 @@ impl Sampler {
     #[must_use]
     pub fn alpha_at(&self, image: &Image, uv: Vec2) -> f32 {
         let level = &image.levels[0];
-        let size = [level.width as i32, level.height as i32];
-        mask::interpolated(size, self.wrap.map(Axis::of), self.mag.half(), uv, |texel| level.texels[texel][3])
+        AlphaReader::new([level.width, level.height], self).read(uv, |texel| level.texels[texel][3])
     }
 }
 
@@ -91,14 +86,24 @@ impl Quad {
         Self { texels: [upper + left, upper + right, lower + left, lower + right], shares }
     }
 
-    /// The texels around the [reduced](Axis::reduced) coordinates `uv` of a level.
+    /// The texels around `uv` of two levels.
     #[inline(always)]
-    fn around(axes: [Axis; 2], uv: [f32; 2], size: [u32; 2], filter: Filter) -> Self {
+    fn pair(wrap: [Wrap; 2], uv: Vec2, [fine, coarse]: [&ImageLevel; 2], filter: Filter) -> [Self; 2] {
+        let axes = Axes::of(wrap);
+        let side = |side: u32| side as i32 as f32;
+        let size = Vec4::new(side(fine.width), side(fine.height), side(coarse.width), side(coarse.height));
         let half = filter.half();
-        let taps = |axis: usize| axes[axis].taps(uv[axis], size[axis] as i32, half);
-        let (u, v, width) = (taps(0), taps(1), size[0] as usize);
-        let places = |taps: &Taps| [taps.first as usize, taps.second as usize];
-        Self::new(places(&u), places(&v).map(|row| row * width), [u.share, v.share])
+        let x = axes.reduced(uv) * size - half;
+        let left = x.floor();
+        let shares = if half == 0.0 { Vec4::ZERO } else { x - left };
+        let first = axes.texels(left, size);
+        let second = axes.texels(left + 1.0, size);
+        let quad = |level: &ImageLevel, u: usize, v: usize| {
+            let width = level.width as usize;
+            let rows = [first[v] * width, second[v] * width];
+            Self::new([first[u], second[u]], rows, [shares[u], shares[v]])
+        };
+        [quad(fine, 0, 1), quad(coarse, 2, 3)]
     }
 
     #[inline(always)]

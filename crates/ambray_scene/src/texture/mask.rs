@@ -2,30 +2,35 @@
 
 use std::sync::Arc;
 
-use glam::Vec2;
+use glam::{Vec2, Vec4};
 
 use super::{
-    Image, Sampler,
-    taps::{Axis, Taps},
+    Filter, Image, Sampler,
+    taps::{Axes, twice},
 };
 use crate::srgb;
 
 /// The alpha of the full image, row by row from the top. Clones share it.
 #[derive(Clone, Debug)]
 pub(crate) struct AlphaPlane {
-    size: [i32; 2],
+    size: [u32; 2],
     alphas: Arc<[u8]>,
 }
 
 /// An alpha plane with a way to read it.
 #[derive(Clone, Debug)]
 pub(crate) struct Mask {
-    plane: AlphaPlane,
-    axes: [Axis; 2],
-    /// Whether it repeats along both axes.
-    is_tiled: bool,
-    /// See [`Axis::taps`].
-    half: f32,
+    reader: AlphaReader,
+    alphas: Arc<[u8]>,
+}
+
+/// How the alpha of an image is read.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct AlphaReader {
+    axes: Axes,
+    size: Vec4,
+    width: usize,
+    filter: Filter,
 }
 
 impl AlphaPlane {
@@ -33,44 +38,45 @@ impl AlphaPlane {
     pub(crate) fn of(image: &Image) -> Self {
         let full = &image.levels[0];
         let alphas = full.texels.iter().map(|texel| texel[3]).collect();
-        Self { size: [full.width as i32, full.height as i32], alphas }
+        Self { size: [full.width, full.height], alphas }
     }
 }
 
 impl Mask {
     pub(crate) fn new(plane: &AlphaPlane, sampler: &Sampler) -> Self {
-        let axes = sampler.wrap.map(Axis::of);
-        let is_tiled = axes == [Axis::REPEAT; 2];
-        Self { plane: plane.clone(), axes, is_tiled, half: sampler.mag.half() }
+        Self { reader: AlphaReader::new(plane.size, sampler), alphas: Arc::clone(&plane.alphas) }
     }
 
     /// The bits of [`Sampler::alpha_at`].
     #[inline(always)]
     pub(crate) fn at(&self, uv: Vec2) -> f32 {
-        let AlphaPlane { size, alphas } = &self.plane;
-        let read = |axes: [Axis; 2]| interpolated(*size, axes, self.half, uv, |texel| alphas[texel]);
-        // Nearly all are tiled, and with constants most of the arithmetic is gone.
-        if self.is_tiled { read([Axis::REPEAT; 2]) } else { read(self.axes) }
+        self.reader.read(uv, |texel| self.alphas[texel])
     }
 }
 
-/// The alpha at `uv` of an image, whose texels' `alpha` is given.
-#[inline(always)]
-pub(super) fn interpolated(
-    size: [i32; 2],
-    axes: [Axis; 2],
-    half: f32,
-    uv: Vec2,
-    alpha: impl Fn(usize) -> u8,
-) -> f32 {
-    let taps = |axis: usize| axes[axis].taps(axes[axis].reduced(uv[axis]), size[axis], half);
-    let [u, v]: [Taps; 2] = [taps(0), taps(1)];
-    let row = |row: i32| {
-        let start = row as usize * size[0] as usize;
-        let alpha = |column: i32| srgb::UNIT[usize::from(alpha(start + column as usize))];
-        lerp(alpha(u.first), alpha(u.second), u.share)
-    };
-    lerp(row(v.first), row(v.second), v.share)
+impl AlphaReader {
+    #[inline(always)]
+    pub(super) fn new([width, height]: [u32; 2], sampler: &Sampler) -> Self {
+        let size = twice(width as i32 as f32, height as i32 as f32);
+        Self { axes: Axes::of(sampler.wrap), size, width: width as usize, filter: sampler.mag }
+    }
+
+    /// The alpha at `uv` of an image, whose texels' `alpha` is given.
+    #[inline(always)]
+    pub(super) fn read(&self, uv: Vec2, alpha: impl Fn(usize) -> u8) -> f32 {
+        let half = self.filter.half();
+        let x = self.axes.reduced(uv) * self.size - half;
+        let left = x.floor();
+        let [right_share, lower_share, ..] = if half == 0.0 { [0.0; 4] } else { (x - left).to_array() };
+        // The second two are the neighbours of the first two.
+        let texels = self.axes.texels(left + Vec4::new(0.0, 0.0, 1.0, 1.0), self.size);
+        let [left, upper, right, lower] = texels;
+        let row = |row: usize| {
+            let alpha = |column: usize| srgb::UNIT[usize::from(alpha(row * self.width + column))];
+            lerp(alpha(left), alpha(right), right_share)
+        };
+        lerp(row(upper), row(lower), lower_share)
+    }
 }
 
 #[inline(always)]
@@ -81,7 +87,7 @@ fn lerp(a: f32, b: f32, share: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Filter, Wrap};
+    use crate::Wrap;
 
     #[test]
     fn masks_read_the_alpha_of_the_image() {

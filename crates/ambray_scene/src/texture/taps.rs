@@ -1,11 +1,14 @@
 //! The two texels that a coordinate falls between along one axis of an image.
 //!
-//! Without branches, so that many coordinates can be worked on at once.
+//! Without branches, so that many coordinates can be worked on at once: [`Axis`] is for loops over many of them, [`Axes`] for
+//! a single place.
+
+use glam::{Vec2, Vec4};
 
 use super::{Filter, Wrap};
 
 /// What is outside the image along an axis: it repeats, unless it is said otherwise.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Axis {
     pub(super) is_mirror: bool,
     pub(super) is_clamp: bool,
@@ -21,13 +24,6 @@ pub(super) struct Taps {
 }
 
 impl Axis {
-    pub(super) const REPEAT: Self = Self { is_mirror: false, is_clamp: false };
-
-    #[inline(always)]
-    pub(super) fn of(wrap: Wrap) -> Self {
-        Self { is_mirror: wrap == Wrap::Mirror, is_clamp: wrap == Wrap::Clamp }
-    }
-
     /// The coordinate of the same texel near the unit interval, so that huge ones keep their integer part exact; 0 for those
     /// that are not finite.
     #[inline(always)]
@@ -67,6 +63,56 @@ impl Axis {
     }
 }
 
+/// Both axes twice, side by side: with the bits of [`Axis`] for each.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Axes {
+    /// Periods, of the size of the image: 2 where it is mirrored.
+    period: Vec4,
+    /// 1 where it is clamped, else 0.
+    is_clamp: Vec4,
+}
+
+impl Axes {
+    #[inline(always)]
+    pub(super) fn of([u, v]: [Wrap; 2]) -> Self {
+        let period = |wrap: Wrap| if wrap == Wrap::Mirror { 2.0 } else { 1.0 };
+        let is_clamp = |wrap: Wrap| if wrap == Wrap::Clamp { 1.0 } else { 0.0 };
+        Self { period: twice(period(u), period(v)), is_clamp: twice(is_clamp(u), is_clamp(v)) }
+    }
+
+    /// See [`Axis::reduced`].
+    #[inline(always)]
+    pub(super) fn reduced(&self, uv: Vec2) -> Vec4 {
+        let x = twice(uv.x, uv.y);
+        let x = Vec4::select(x.abs().cmplt(Vec4::INFINITY), x, Vec4::ZERO);
+        // One period or half of it.
+        let inverse = Vec4::splat(1.5) - 0.5 * self.period;
+        let repeated = x - self.period * (inverse * x).floor();
+        let clamped = x.max(Vec4::NEG_ONE).min(Vec4::splat(2.0));
+        Vec4::select(self.is_clamp.cmpgt(Vec4::ZERO), clamped, repeated)
+    }
+
+    /// The texels at `indices`, which are integers, along axes of `size` texels: see [`Axis::texel`].
+    #[inline(always)]
+    pub(super) fn texels(&self, indices: Vec4, size: Vec4) -> [usize; 4] {
+        let period = self.period * size;
+        let within = indices + Vec4::select(indices.cmplt(Vec4::ZERO), period, Vec4::ZERO);
+        let within = within - Vec4::select(within.cmpge(period), period, Vec4::ZERO);
+        let within = within.min(2.0 * size - Vec4::ONE - within);
+        let clamped = indices.max(Vec4::ZERO).min(size - Vec4::ONE);
+        let texels = Vec4::select(self.is_clamp.cmpgt(Vec4::ZERO), clamped, within);
+        // From 2²³ on the last bits of a number are an integer, and sides are shorter.
+        let [a, b, c, d] = (texels + Vec4::splat(8_388_608.0)).to_array();
+        let integer = |x: f32| (x.to_bits() & 0x007f_ffff) as usize;
+        [integer(a), integer(b), integer(c), integer(d)]
+    }
+}
+
+#[inline(always)]
+pub(super) fn twice(x: f32, y: f32) -> Vec4 {
+    Vec4::new(x, y, x, y)
+}
+
 impl Filter {
     /// How far from its edge a texel counts alone, texels; 0 where each does all over itself.
     #[inline(always)]
@@ -87,6 +133,12 @@ fn floor(x: f32) -> i32 {
 mod tests {
     use super::*;
 
+    impl Axis {
+        fn of(wrap: Wrap) -> Self {
+            Self { is_mirror: wrap == Wrap::Mirror, is_clamp: wrap == Wrap::Clamp }
+        }
+    }
+
     #[test]
     fn floors() {
         let near = |x: f32| [x.next_down(), x, x.next_up(), -x, (-x).next_up(), (-x).next_down()];
@@ -102,6 +154,25 @@ mod tests {
             assert_eq!(Axis::of(Wrap::Repeat).reduced(x), x - x.floor());
             assert_eq!(Axis::of(Wrap::Mirror).reduced(x), x - 2.0 * (0.5 * x).floor());
             assert_eq!(Axis::of(Wrap::Clamp).reduced(x), x.clamp(-1.0, 2.0));
+        }
+    }
+
+    #[test]
+    fn single_places_have_the_same_bits() {
+        let wraps = [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp];
+        let odd = [f32::NAN, f32::INFINITY, f32::MAX, -3e9, 8_388_607.5, -0.0, 1e-40, -1e-9, 1.0, 2.0];
+        for (i, u) in (0..999).map(|i| i as f32 * 0.0173 - 4.0).chain(odd).enumerate() {
+            let [a, b] = [wraps[i % 3], wraps[i / 3 % 3]];
+            let (uv, size) = (Vec2::new(u, 1.0 - 0.3 * u), [1 + (i as i32 * 7) % 40, 1 + (i as i32 * 5) % 9]);
+            let axes = Axes::of([a, b]);
+            let reduced = axes.reduced(uv);
+            assert_eq!(reduced.x, Axis::of(a).reduced(uv.x));
+            assert_eq!(reduced.w, Axis::of(b).reduced(uv.y));
+            let left = reduced.truncate().truncate() * Vec2::new(size[0] as f32, size[1] as f32);
+            let left = left.map(|x| (x - 0.5).floor());
+            let texels = axes.texels(twice(left.x, left.y), twice(size[0] as f32, size[1] as f32));
+            assert_eq!(texels[0] as i32, Axis::of(a).texel(left.x as i32, size[0]));
+            assert_eq!(texels[3] as i32, Axis::of(b).texel(left.y as i32, size[1]));
         }
     }
 
