@@ -38,7 +38,7 @@ struct Blends {
     coarse: Lanes<u32>,
     /// Weight of the coarse one; 0 if it need not be read.
     share: Lanes<f32>,
-    /// Distance from a texel's left edge to where it counts alone, texels: ½ where texels are interpolated, else 0.
+    /// [`Filter::half`] of the filter between texels.
     half: Lanes<f32>,
 }
 
@@ -58,11 +58,15 @@ struct Quads {
 pub(super) struct Mode(u32);
 
 impl Mode {
+    /// Of u and of v, as the next.
     const MIRROR: [u32; 2] = [1, 2];
     const CLAMP: [u32; 2] = [4, 8];
+    /// No filter between texels where the texture is magnified, and where it is minified.
     const NEAREST_MAGNIFIED: u32 = 16;
     const NEAREST_MINIFIED: u32 = 32;
+    /// Level 0 alone.
     const FULL_IMAGE: u32 = 64;
+    /// No filter between levels.
     const NEAREST_LEVEL: u32 = 128;
 
     pub(super) fn of(sampler: &Sampler) -> Self {
@@ -94,6 +98,7 @@ impl Mode {
 }
 
 impl<'a> Looks<'a> {
+    /// None yet.
     pub(crate) fn new() -> Self {
         let quads = || Quads { size: [[0; LANES]; 2], taps: [[[0; LANES]; 2]; 2], shares: [[0.0; LANES]; 2] };
         Self {
@@ -155,7 +160,7 @@ impl<'a> Looks<'a> {
         let Self { texels, last, modes, blend, .. } = self;
         for i in 0..LANES {
             let (texels, last, mode) = (texels[i], last[i], modes[i]);
-            // Neither a number nor larger: as the level of footprints that are none.
+            // Not so where the footprint is no number: that reads the full image.
             let is_minified = texels > 1.0;
             let nearest = if is_minified { Mode::NEAREST_MINIFIED } else { Mode::NEAREST_MAGNIFIED };
             let smallest = last as i32 as f32;
@@ -173,7 +178,7 @@ impl<'a> Looks<'a> {
         }
     }
 
-    /// Their sizes.
+    /// Sizes of these levels.
     #[inline(always)]
     fn measure_levels(&mut self) {
         let Self { textures, blend, fine, coarse, .. } = self;
@@ -210,6 +215,7 @@ impl Quads {
         }
     }
 
+    /// Those of look `i`.
     #[inline(always)]
     fn get(&self, i: usize) -> Quad {
         let [[left, right], [upper, lower]] =

@@ -43,6 +43,7 @@ impl AlphaPlane {
 }
 
 impl Mask {
+    /// Makes `plane` ready to be read by `sampler`.
     pub(crate) fn new(plane: &AlphaPlane, sampler: &Sampler) -> Self {
         Self { reader: AlphaReader::new(plane.size, sampler), alphas: Arc::clone(&plane.alphas) }
     }
@@ -55,6 +56,7 @@ impl Mask {
 }
 
 impl AlphaReader {
+    /// For an image of that size.
     #[inline(always)]
     pub(super) fn new([width, height]: [u32; 2], sampler: &Sampler) -> Self {
         let size = twice(width as i32 as f32, height as i32 as f32);

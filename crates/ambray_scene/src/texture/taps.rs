@@ -73,6 +73,7 @@ pub(super) struct Axes {
 }
 
 impl Axes {
+    /// Those of a sampler.
     #[inline(always)]
     pub(super) fn of([u, v]: [Wrap; 2]) -> Self {
         let period = |wrap: Wrap| if wrap == Wrap::Mirror { 2.0 } else { 1.0 };
@@ -108,6 +109,7 @@ impl Axes {
     }
 }
 
+/// `x` and `y`, and once more.
 #[inline(always)]
 pub(super) fn twice(x: f32, y: f32) -> Vec4 {
     Vec4::new(x, y, x, y)
