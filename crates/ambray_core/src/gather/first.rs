@@ -226,11 +226,11 @@ fn push_group<const L: usize>(at: usize, batch: &mut FirstBatch, sample: &Rays, 
     let (slot, owner) = (slot as u32, (sample.first + at) as u32);
     // Each is written, and stays where one above the horizon is next: no branch that depends on the ray.
     let mut next = 0;
-    for lane in 0..L {
+    for (lane, &distance) in above.iter().enumerate() {
         rays[next] = ray(lane);
         slots[next] = slot + lane as u32;
         owners[next] = owner + lane as u32;
-        next += usize::from(above[lane] > 0.0);
+        next += usize::from(distance > 0.0);
     }
     *count += next;
 }
@@ -265,8 +265,8 @@ fn make_group<const L: usize>(at: usize, samples: &mut Samples, starts: &Starts,
     }
     let distance = height.map(|height| if height > 0.0 { f32::INFINITY } else { 0.0 });
     *group_mut(&mut samples.distance, slot + at) = distance;
-    for axis in 0..3 {
-        *group_mut(&mut samples.direction[axis], slot + at) = direction[axis];
+    for (axis, direction) in direction.into_iter().enumerate() {
+        *group_mut(&mut samples.direction[axis], slot + at) = direction;
         *group_mut(&mut samples.radiance[axis], slot + at) = [0.0; L];
     }
 }

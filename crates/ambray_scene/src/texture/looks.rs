@@ -206,10 +206,10 @@ impl Quads {
     /// Finds the texels around the reduced coordinates `uv`.
     #[inline(always)]
     fn find(&mut self, uv: &[Lanes<f32>; 2], modes: &Lanes<Mode>, half: &Lanes<f32>) {
-        for axis in 0..2 {
+        for (axis, uv) in uv.iter().enumerate() {
             let [first, second] = &mut self.taps[axis];
             for i in 0..LANES {
-                let taps = modes[i].axis(axis).taps(uv[axis][i], self.size[axis][i], half[i]);
+                let taps = modes[i].axis(axis).taps(uv[i], self.size[axis][i], half[i]);
                 (first[i], second[i], self.shares[axis][i]) = (taps.first, taps.second, taps.share);
             }
         }
