@@ -16,6 +16,7 @@ pub struct Basis {
 impl Basis {
     /// Basis of the unit normal `n`.
     #[must_use]
+    #[inline(always)]
     pub fn from_normal(n: Vec3) -> Self {
         let s = if n.z >= 0.0 { 1.0 } else { -1.0 };
         let p = -1.0 / (s + n.z);
@@ -29,6 +30,7 @@ impl Basis {
 
     /// World direction of `local` = (t, b, n) components.
     #[must_use]
+    #[inline(always)]
     pub fn to_world(&self, local: Vec3) -> Vec3 {
         self.tangent * local.x + self.bitangent * local.y + self.normal * local.z
     }

@@ -98,6 +98,7 @@ impl Camera {
 
     /// Primary ray through the centre of pixel (x, y), unbounded.
     #[must_use]
+    #[inline(always)]
     pub fn primary_ray(&self, x: u32, y: u32, seed: u32) -> Ray {
         // Place in the picture plane: x to the right, y up, scaled so that the picture reaches up to half_height.
         let scale = self.half_height / (0.5 * self.height as f32);
@@ -128,12 +129,14 @@ impl Camera {
 
     /// View depth of `point`: its distance from the camera plane, scene units.
     #[must_use]
+    #[inline(always)]
     pub fn depth(&self, point: Vec3) -> f32 {
         (point - self.position).dot(self.forward)
     }
 
     /// Size of a pixel at view depth `depth`, scene units: z · 2 tan(fov/2)/height (spec §7).
     #[must_use]
+    #[inline(always)]
     pub fn footprint(&self, depth: f32) -> f32 {
         let pixel = self.half_height / (0.5 * self.height as f32);
         match self.projection {

@@ -11,6 +11,7 @@ use crate::settings::RadianceSource;
 /// All sources but the self-similar one are complete after the gather. The self-similar bounce multiplies the mean
 /// albedo of the near hits, `near` = ã (1 − O), by L_a F with F = O / (1 − ã (1 − O)) per channel (spec §3).
 #[must_use]
+#[inline(always)]
 pub fn near_radiance(source: RadianceSource, ambient: Vec3, openness: f32, near: Vec3) -> Vec3 {
     match source {
         RadianceSource::SelfSimilar => near * ambient * self_similar_factor(openness, near),
@@ -20,12 +21,14 @@ pub fn near_radiance(source: RadianceSource, ambient: Vec3, openness: f32, near:
 
 /// Openness (x) and the sum of the gather (yzw) with the near-field radiance in its place (see [`near_radiance`]).
 #[must_use]
+#[inline(always)]
 pub fn finished(source: RadianceSource, ambient: Vec3, sum: Vec4) -> Vec4 {
     near_radiance(source, ambient, sum.x, sum.yzw()).extend(sum.x).wxyz()
 }
 
 /// F = O / (1 − ã (1 − O)) in `[0, 1]`, given `near` = ã (1 − O). Nothing glows where nothing is open.
 #[must_use]
+#[inline(always)]
 pub fn self_similar_factor(openness: f32, near: Vec3) -> Vec3 {
     // With ã ≤ 1 the divisor is at least O; rounding must not make it less.
     if openness > 0.0 { openness / (Vec3::ONE - near).max(Vec3::splat(openness)) } else { Vec3::ZERO }
@@ -33,12 +36,14 @@ pub fn self_similar_factor(openness: f32, near: Vec3) -> Vec3 {
 
 /// Light reflected by a diffuse surface that receives `irradiance`: (a/π) Σ E cos V.
 #[must_use]
+#[inline(always)]
 pub fn reflected(albedo: Vec3, irradiance: Vec3) -> Vec3 {
     albedo * irradiance * FRAC_1_PI
 }
 
 /// Albedo and emission of a surface. Unlit ones show their base colour whatever the light.
 #[must_use]
+#[inline(always)]
 pub fn albedo_and_emission(base_color: Vec3, emission: Vec3, unlit: bool) -> (Vec3, Vec3) {
     if unlit { (Vec3::ZERO, base_color + emission) } else { (base_color, emission) }
 }
@@ -46,12 +51,14 @@ pub fn albedo_and_emission(base_color: Vec3, emission: Vec3, unlit: bool) -> (Ve
 /// Of two batches, each openness (x) with its near radiance (yzw), the one with the smaller openness:
 /// O = min(O1, A2) (spec §8).
 #[must_use]
+#[inline(always)]
 pub fn smaller_batch(first: Vec4, second: Vec4) -> Vec4 {
     if second.x < first.x { second } else { first }
 }
 
 /// L = emission + a (L_a O + I) + `direct`, with `direct` from [`reflected`].
 #[must_use]
+#[inline(always)]
 pub fn compose(emission: Vec3, albedo: Vec3, ambient: Vec3, openness: f32, near: Vec3, direct: Vec3) -> Vec3 {
     emission + albedo * (ambient * openness + near) + direct
 }

@@ -54,6 +54,7 @@ pub struct DirectScratch {
 /// Writes the direct light at `receivers[i]` to `received[i]`.
 ///
 /// Lights below the geometric horizon never reach a point.
+#[inline(always)]
 pub fn direct_irradiance(
     trace: &impl Trace,
     lighting: DirectLighting<'_>,

@@ -62,12 +62,14 @@ impl GBufferPixel {
 
     /// Whether the pixel sees a surface.
     #[must_use]
+    #[inline(always)]
     pub const fn is_surface(&self) -> bool {
         self.instance != u32::MAX
     }
 
     /// What the filter knows about the pixel, seen by `camera`.
     #[must_use]
+    #[inline(always)]
     pub fn guide(&self, camera: &Camera) -> Guide {
         if !self.is_surface() {
             return Guide::NOTHING;
@@ -78,6 +80,7 @@ impl GBufferPixel {
 
     /// The surface as the gather sees it, with the samples of `key`.
     #[must_use]
+    #[inline(always)]
     pub const fn shaded_point(&self, key: PixelKey) -> ShadedPoint {
         ShadedPoint {
             position: self.position,
@@ -91,6 +94,7 @@ impl GBufferPixel {
 
     /// The surface as lights see it. Its shadow rays take the seed of a ray of `key` that no batch has.
     #[must_use]
+    #[inline(always)]
     pub const fn receiver(&self, key: PixelKey) -> Receiver {
         Receiver {
             position: self.position,

@@ -50,6 +50,7 @@ pub struct Incident {
 impl Light {
     /// Light arriving at `point`, before visibility and the cosine of the surface.
     #[must_use]
+    #[inline(always)]
     pub fn incident(&self, point: Vec3) -> Incident {
         match *self {
             Self::Directional { to_light, irradiance } => {
@@ -70,6 +71,7 @@ impl Light {
 
 impl Cone {
     /// Share of the intensity sent along the unit vector `direction` (KHR_lights_punctual, "Inner and Outer Cone Angles").
+    #[inline(always)]
     fn factor(&self, direction: Vec3) -> f32 {
         let scale = 1.0 / (self.cos_inner - self.cos_outer).max(0.001);
         let x = ((self.axis.dot(direction) - self.cos_outer) * scale).clamp(0.0, 1.0);
@@ -78,6 +80,7 @@ impl Cone {
 }
 
 /// Smooth window that brings a point light to zero at its range (KHR_lights_punctual, "Range Property").
+#[inline(always)]
 fn range_window(distance: f32, range: f32) -> f32 {
     let square = (distance / range) * (distance / range);
     if range.is_finite() { (1.0 - square * square).clamp(0.0, 1.0) } else { 1.0 }

@@ -52,6 +52,7 @@ impl RayOffset {
     /// `reach` is the largest magnitude of a coordinate of the triangle's corners, and of the numbers they are computed
     /// from; 0 is the published offset.
     #[must_use]
+    #[inline(always)]
     pub fn apply(&self, p: Vec3, n: Vec3, reach: f32) -> Vec3 {
         let published =
             Vec3::new(self.coordinate(p.x, n.x), self.coordinate(p.y, n.y), self.coordinate(p.z, n.z));
@@ -59,6 +60,7 @@ impl RayOffset {
         Vec3::select((published - p).abs().cmplt(rounding.abs()), p + rounding, published)
     }
 
+    #[inline(always)]
     fn coordinate(&self, p: f32, n: f32) -> f32 {
         if p.abs() < self.near_zero {
             return p + n * self.distance;

@@ -67,6 +67,7 @@ impl Openness {
 
     /// Distance from which μ is 1: the `t_max` of ambient rays. Infinite for [`Openness::Exponential`].
     #[must_use]
+    #[inline(always)]
     pub const fn reach(&self) -> f32 {
         match *self {
             Self::Power { radius, .. }

@@ -20,12 +20,14 @@ pub const DEFAULT_SEEDS: [u32; 2] = [0xe25e_5511, 0x7187_64de];
 
 /// Sample class of pixel (x, y).
 #[must_use]
+#[inline(always)]
 pub const fn sample_class(x: u32, y: u32) -> u8 {
     CLASS_TABLE[(y & 3) as usize][(x & 3) as usize]
 }
 
 /// Permuted congruential hash of 32 bits (PCG-RXS-M-XS, O'Neill 2014; spec §6).
 #[must_use]
+#[inline(always)]
 pub const fn pcg(v: u32) -> u32 {
     let s = v.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
     let w = ((s >> ((s >> 28) + 4)) ^ s).wrapping_mul(277_803_737);
@@ -130,6 +132,7 @@ pub struct PixelKey {
 impl PixelKey {
     /// Key of pixel (x, y) in `frame`.
     #[must_use]
+    #[inline(always)]
     pub const fn new(x: u32, y: u32, frame: u32, seed: u32) -> Self {
         // Nested hashing: consecutive inputs must not give correlated scrambles (spec §6).
         let hash = pcg(x.wrapping_add(pcg(y.wrapping_add(pcg(frame.wrapping_add(pcg(seed)))))));
@@ -140,12 +143,14 @@ impl PixelKey {
     /// (see [`alpha_threshold`](crate::trace::alpha_threshold)). They do not depend on the seed of the sample sets: pictures with
     /// other seeds are estimates of the same surfaces, so that their mean converges.
     #[must_use]
+    #[inline(always)]
     pub const fn primary_seed(x: u32, y: u32, frame: u32) -> u32 {
         (Self::new(x >> 2, y >> 2, frame, 0).hash << 4) | sample_class(x, y) as u32
     }
 
     /// Seed of the pixel's secondary ray number `ray`.
     #[must_use]
+    #[inline(always)]
     pub const fn ray_seed(&self, ray: u32) -> u32 {
         pcg(self.hash ^ pcg(ray))
     }

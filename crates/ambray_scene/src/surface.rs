@@ -1,6 +1,7 @@
 //! From a hit to the attributes of the surface there.
 
 mod albedo;
+mod alpha;
 mod at;
 
 use std::sync::{Arc, OnceLock};
@@ -12,6 +13,7 @@ use crate::implicit::{ShapeFrame, ShapePoint};
 use crate::{AlphaMode, Instance, Material, MaterialKind, Mesh, Motion, Scene, ShapeInstance, TextureRef};
 
 use albedo::Albedos;
+use alpha::{Cutout, cutouts};
 use at::{At, Face};
 
 /// Answers questions about points on the surfaces of a scene.
@@ -26,6 +28,8 @@ pub struct Surfaces {
     shape_frames: Vec<ShapeFrame>,
     /// One a mesh: whether all of it is there for all rays.
     opaque: Arc<[bool]>,
+    /// One a mesh: how it is seen, where a texture decides that alone.
+    cutouts: Arc<[Option<Cutout>]>,
     /// Empty until they are asked for. What does not move has the same albedos at all poses.
     albedos: Arc<OnceLock<Albedos>>,
 }
@@ -133,17 +137,20 @@ fn towards(v: Vec3, side: Vec3) -> Vec3 {
 }
 
 impl Surfaces {
-    /// Prepares `scene`: one pass over its instances, and over the alpha of images and vertices. Tables of albedos wait for
+    /// Prepares `scene`: one pass over its instances, and over the alpha of images and vertices, which is kept apart for
+    /// meshes that are seen in part. Tables of albedos wait for
     /// [`prepare_albedos`](Self::prepare_albedos).
     ///
     /// # Panics
     /// If the scene's indices refer to what is not there.
     #[must_use]
     pub fn new(scene: Arc<Scene>) -> Self {
+        let opaque = is_opaque_by_mesh(&scene);
         Self {
             frames: scene.instances.iter().map(Frame::new).collect(),
             shape_frames: shape_frames(&scene),
-            opaque: is_opaque_by_mesh(&scene).into(),
+            cutouts: cutouts(&scene, &opaque),
+            opaque: opaque.into(),
             albedos: Arc::default(),
             scene,
         }
@@ -156,6 +163,7 @@ impl Surfaces {
             frames: scene.instances.iter().map(Frame::new).collect(),
             shape_frames: shape_frames(&scene),
             opaque: Arc::clone(&self.opaque),
+            cutouts: Arc::clone(&self.cutouts),
             albedos: Arc::clone(&self.albedos),
             scene,
         }
@@ -187,6 +195,16 @@ impl Surfaces {
     /// nothing of it.
     #[must_use]
     pub fn accepts(&self, instance: u32, triangle: u32, u: f32, v: f32, seed: u32) -> bool {
+        let mesh = self.scene.instances.get(instance as usize).map(|instance| instance.mesh as usize);
+        if let Some(cutout) = mesh.and_then(|mesh| self.cutouts[mesh].as_ref()) {
+            return cutout.accepts(instance, triangle, u, v, seed);
+        }
+        self.accepts_by_material(instance, triangle, u, v, seed)
+    }
+
+    /// [`accepts`](Self::accepts) for all that is no [`Cutout`]. Seldom asked, so its code is not among the rest.
+    #[inline(never)]
+    fn accepts_by_material(&self, instance: u32, triangle: u32, u: f32, v: f32, seed: u32) -> bool {
         let material = match self.scene.shape_instance(instance) {
             Some(shape) => shape.material,
             None => self.mesh(instance).material,

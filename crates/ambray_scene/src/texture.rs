@@ -1,11 +1,16 @@
 //! Images, samplers and texture lookups.
 
+mod looks;
 mod lookup;
+mod mask;
 mod prepared;
+mod taps;
 
 use crate::{mip, srgb};
 
-pub(crate) use prepared::{Place, PreparedImage, PreparedTexture};
+pub(crate) use looks::Looks;
+pub(crate) use mask::{AlphaPlane, Mask};
+pub(crate) use prepared::{PreparedImage, PreparedTexture};
 
 /// A decoded image with its mip chain, RGBA with 8 bits a channel.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,9 +26,9 @@ pub struct Image {
 /// One level of an [`Image`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImageLevel {
-    /// Width in texels, at least 1.
+    /// Width in texels, at least 1 and below 2²³.
     pub width: u32,
-    /// Height in texels, at least 1.
+    /// Height in texels, at least 1 and below 2²³.
     pub height: u32,
     /// Texels row by row from the top, RGBA.
     pub texels: Vec<[u8; 4]>,
@@ -91,10 +96,12 @@ impl Image {
     /// Levels of sRGB images are averaged in linear light and weighted by alpha, others as they are.
     ///
     /// # Panics
-    /// If `texels` does not hold `width` × `height` entries or the size is zero.
+    /// If `texels` does not hold `width` × `height` entries, or if a side is zero or has 2²³ texels or more.
     #[must_use]
     pub fn new(name: String, width: u32, height: u32, texels: Vec<[u8; 4]>, srgb: bool) -> Self {
-        assert!(width > 0 && height > 0 && texels.len() == width as usize * height as usize, "image size");
+        let is_side = |side: u32| (1..1 << 23).contains(&side);
+        let count = width as usize * height as usize;
+        assert!(is_side(width) && is_side(height) && texels.len() == count, "image size");
         let mut levels = vec![ImageLevel { width, height, texels }];
         while let Some(last) = levels.last().filter(|last| last.width.max(last.height) > 1) {
             let next = mip::half(last, srgb);

@@ -49,8 +49,6 @@ struct Starts {
     hashes: Vec<u32>,
     /// Directions of a sample, where each point has its own.
     local: [Vec<f32>; 3],
-    /// Seeds of its rays.
-    seeds: Vec<u32>,
 }
 
 impl FirstBatch {
@@ -138,26 +136,34 @@ impl FirstBatch {
     #[inline(always)]
     fn make_rays(&mut self, params: &GatherParams<'_>, points: &[ShadedPoint]) {
         self.samples.begin(params, points);
-        self.rays.clear();
-        self.slots.clear();
-        self.owners.clear();
         // Room for all, so that the loop need not ask.
         let most = self.samples.distance.len();
-        self.rays.reserve(most);
-        self.slots.reserve(most);
-        self.owners.reserve(most);
+        self.rays.resize(most, NO_RAY);
+        self.slots.resize(most, 0);
+        self.owners.resize(most, 0);
+        let mut count = 0;
         for i in 0..self.samples.runs.len() {
             let run = self.samples.runs[i];
             self.starts.begin(params, &points[run.range()]);
             for j in 0..params.samples.spp() as usize {
-                self.make_sample(params, &points[run.range()], &run, j);
+                self.make_sample(params, &points[run.range()], &run, j, &mut count);
             }
         }
+        self.rays.truncate(count);
+        self.slots.truncate(count);
+        self.owners.truncate(count);
     }
 
-    /// Sample `j` of all points of a `run`.
+    /// Sample `j` of all points of a `run`, after the `count` rays that are there.
     #[inline(always)]
-    fn make_sample(&mut self, params: &GatherParams<'_>, points: &[ShadedPoint], run: &Run, j: usize) {
+    fn make_sample(
+        &mut self,
+        params: &GatherParams<'_>,
+        points: &[ShadedPoint],
+        run: &Run,
+        j: usize,
+        count: &mut usize,
+    ) {
         let (samples, starts) = (&mut self.samples, &mut self.starts);
         let slot = run.slot(0, j);
         match params.samples.shared(points[0].key.class, j as u32) {
@@ -178,40 +184,55 @@ impl FirstBatch {
                 in_groups!(run.points, make_group(samples, starts, slot, Local::Own));
             }
         }
-        let salt = pcg(j as u32);
-        for (seed, hash) in starts.seeds.iter_mut().zip(&starts.hashes) {
-            *seed = pcg(hash ^ salt);
-        }
-        let t_max = params.openness.reach();
-        in_groups!(run.points, push_group(self, t_max, run.first, slot));
+        let sample = Rays { salt: pcg(j as u32), t_max: params.openness.reach(), first: run.first, slot };
+        in_groups!(run.points, push_group(self, &sample, count));
     }
+}
+
+/// Takes the places of rays that are not there yet.
+const NO_RAY: Ray = Ray { origin: Vec3::ZERO, t_max: 0.0, direction: Vec3::ZERO, seed: 0 };
+
+/// What the rays of a sample share.
+struct Rays {
+    /// Tells their seeds from those of other samples.
+    salt: u32,
+    t_max: f32,
+    /// Their first point, and the slot of its sample.
+    first: usize,
+    slot: usize,
 }
 
 /// Adds the rays of the `L` points from `at` on that are above their horizon.
 #[inline(always)]
-fn push_group<const L: usize>(at: usize, batch: &mut FirstBatch, t_max: f32, first: usize, slot: usize) {
+fn push_group<const L: usize>(at: usize, batch: &mut FirstBatch, sample: &Rays, count: &mut usize) {
     let FirstBatch { samples, rays, slots, owners, starts, .. } = batch;
-    let [x, y, z] = samples.direction.each_ref().map(|plane| group::<L>(plane, slot + at));
+    let slot = sample.slot + at;
+    let [x, y, z] = samples.direction.each_ref().map(|plane| group::<L>(plane, slot));
     let origins: &[Vec3; L] = starts.origins[at..at + L].try_into().expect("L origins");
-    let seeds: &[u32; L] = starts.seeds[at..at + L].try_into().expect("L seeds");
-    let above = group::<L>(&samples.distance, slot + at);
-    let direction = |lane: usize| Vec3::new(x[lane], y[lane], z[lane]);
-    let ray =
-        |lane: usize| Ray { origin: origins[lane], t_max, direction: direction(lane), seed: seeds[lane] };
-    let (slot, owner) = ((slot + at) as u32, (first + at) as u32);
-    let count: u32 = above.iter().map(|&distance| u32::from(distance > 0.0)).sum();
-    if count as usize == L {
-        // All at once, as on every flat surface.
-        rays.extend((0..L).map(ray));
-        slots.extend((0..L as u32).map(|lane| slot + lane));
-        owners.extend((0..L as u32).map(|lane| owner + lane));
-        return;
+    let hashes: &[u32; L] = starts.hashes[at..at + L].try_into().expect("L hashes");
+    let above = group::<L>(&samples.distance, slot);
+    let mut seeds = [0; L];
+    for lane in 0..L {
+        seeds[lane] = pcg(hashes[lane] ^ sample.salt);
     }
-    for (lane, _) in above.iter().enumerate().filter(|&(_, &distance)| distance > 0.0) {
-        rays.push(ray(lane));
-        slots.push(slot + lane as u32);
-        owners.push(owner + lane as u32);
+    let ray = |lane: usize| Ray {
+        origin: origins[lane],
+        t_max: sample.t_max,
+        direction: Vec3::new(x[lane], y[lane], z[lane]),
+        seed: seeds[lane],
+    };
+    let places = *count..*count + L;
+    let (rays, slots, owners) = (&mut rays[places.clone()], &mut slots[places.clone()], &mut owners[places]);
+    let (slot, owner) = (slot as u32, (sample.first + at) as u32);
+    // Each is written, and stays where one above the horizon is next: no branch that depends on the ray.
+    let mut next = 0;
+    for (lane, &distance) in above.iter().enumerate() {
+        rays[next] = ray(lane);
+        slots[next] = slot + lane as u32;
+        owners[next] = owner + lane as u32;
+        next += usize::from(distance > 0.0);
     }
+    *count += next;
 }
 
 /// Directions of a sample in the bases of the points.
@@ -227,24 +248,26 @@ enum Local {
 /// blocked at once, without a ray (spec §5).
 #[inline(always)]
 fn make_group<const L: usize>(at: usize, samples: &mut Samples, starts: &Starts, slot: usize, local: Local) {
-    let mut height = [0.0; L];
+    // What is computed stays apart from what is read until all is: the memory of neither is known not to be the other's.
+    let (mut height, mut direction) = ([0.0; L], [[0.0; L]; 3]);
     let own = starts.local.each_ref().map(|plane| group::<L>(plane, at));
     for axis in 0..3 {
         let [tangent, bitangent, normal] = starts.basis.each_ref().map(|of| group::<L>(&of[axis], at));
         let horizon = group::<L>(&starts.horizon[axis], at);
-        let direction = group_mut::<L>(&mut samples.direction[axis], slot + at);
         for lane in 0..L {
             let [x, y, z] = match local {
                 Local::Shared(local) => local.to_array(),
                 Local::Own => [own[0][lane], own[1][lane], own[2][lane]],
             };
-            direction[lane] = tangent[lane] * x + bitangent[lane] * y + normal[lane] * z;
-            height[lane] += direction[lane] * horizon[lane];
+            direction[axis][lane] = tangent[lane] * x + bitangent[lane] * y + normal[lane] * z;
+            height[lane] += direction[axis][lane] * horizon[lane];
         }
-        group_mut::<L>(&mut samples.radiance[axis], slot + at).fill(0.0);
     }
-    for (distance, height) in group_mut::<L>(&mut samples.distance, slot + at).iter_mut().zip(height) {
-        *distance = if height > 0.0 { f32::INFINITY } else { 0.0 };
+    let distance = height.map(|height| if height > 0.0 { f32::INFINITY } else { 0.0 });
+    *group_mut(&mut samples.distance, slot + at) = distance;
+    for (axis, direction) in direction.into_iter().enumerate() {
+        *group_mut(&mut samples.direction[axis], slot + at) = direction;
+        *group_mut(&mut samples.radiance[axis], slot + at) = [0.0; L];
     }
 }
 
@@ -254,16 +277,11 @@ impl Starts {
     fn begin(&mut self, params: &GatherParams<'_>, points: &[ShadedPoint]) {
         let planes = self.basis.iter_mut().flatten().chain(&mut self.horizon).chain(&mut self.local);
         planes.for_each(|plane| plane.resize(points.len(), 0.0));
-        self.seeds.resize(points.len(), 0);
-        self.hashes.clear();
-        self.hashes.extend(points.iter().map(|point| point.key.hash));
-        self.origins.clear();
-        self.origins.extend(
-            points
-                .iter()
-                .map(|point| params.offset.apply(point.position, point.geometric_normal, point.reach)),
-        );
+        self.hashes.resize(points.len(), 0);
+        self.origins.resize(points.len(), Vec3::ZERO);
         for (i, point) in points.iter().enumerate() {
+            self.hashes[i] = point.key.hash;
+            self.origins[i] = params.offset.apply(point.position, point.geometric_normal, point.reach);
             let Basis { tangent, bitangent, normal } = Basis::from_normal(point.normal);
             for axis in 0..3 {
                 self.basis[0][axis][i] = tangent[axis];

@@ -119,6 +119,7 @@ impl Gathered {
     /// Openness (x) and near radiance (yzw) as the filter takes them: of both batches if the minimum is taken
     /// `after_filter`, else of the smaller one.
     #[must_use]
+    #[inline(always)]
     pub fn before_filter(&self, after_filter: bool) -> (Vec4, Option<Vec4>) {
         let join = |openness: f32, near: Vec3| near.extend(openness).wxyz();
         if after_filter {
@@ -207,6 +208,7 @@ impl<'a> GatherParams<'a> {
     }
 
     /// Whether hits need their radiance.
+    #[inline(always)]
     fn needs_radiance(&self) -> bool {
         self.near_radiance != NearRadiance::Off
     }
@@ -214,11 +216,13 @@ impl<'a> GatherParams<'a> {
     /// Width of the footprint of a hit at distance 1, of `spp` rays: a ray stands for the share 1/N of the
     /// cosine-weighted hemisphere, whose area is π.
     #[must_use]
+    #[inline(always)]
     pub fn cone_width_of(spp: u32) -> f32 {
         (PI / spp as f32).sqrt()
     }
 
     /// What the radiance of a hit is over its albedo, where that is the same for all hits.
+    #[inline(always)]
     fn albedo_factor(&self) -> Option<Vec3> {
         match self.source {
             // The factor of the self-similar bounce needs the final openness: see `compose::near_radiance`.
@@ -228,6 +232,7 @@ impl<'a> GatherParams<'a> {
         }
     }
 
+    #[inline(always)]
     fn cone_width(&self) -> f32 {
         Self::cone_width_of(self.samples.spp())
     }

@@ -86,13 +86,20 @@ impl Samples {
     }
 
     /// The sample at `slot`.
+    #[inline(always)]
     pub(super) fn get(&self, slot: usize) -> Sample {
         Sample {
-            direction: self.direction.each_ref().map(|plane| plane[slot]).into(),
+            direction: at(&self.direction, slot),
             distance: self.distance[slot],
-            radiance: self.radiance.each_ref().map(|plane| plane[slot]).into(),
+            radiance: at(&self.radiance, slot),
         }
     }
+}
+
+/// The vector in a `slot` of three planes.
+#[inline(always)]
+fn at([x, y, z]: &[Vec<f32>; 3], slot: usize) -> Vec3 {
+    Vec3::new(x[slot], y[slot], z[slot])
 }
 
 /// `count` points in groups of [`LANES`], then one by one: `group` gets the first and how many, as a constant.

@@ -55,6 +55,8 @@ pub(super) struct Chords {
     blocked: Vec<bool>,
     /// Missed rays of each point of a run, each list ended by the next one's start.
     missed: Vec<u32>,
+    /// Samples in the order in which their missed rays are listed.
+    order: Vec<u32>,
     starts: Vec<usize>,
     results: Vec<SecondBatch>,
     /// Σ blocked and Σ of all, of each point.
@@ -68,12 +70,14 @@ impl Chords {
     }
 
     /// No second batch for `points` points.
+    #[inline(always)]
     pub(super) fn skip(&mut self, points: usize) {
         self.results.clear();
         self.results.resize(points, SecondBatch::OPEN);
     }
 
     /// Traces the chords of `points`, whose first batch is in `samples`: A2 and the radiance of the blocked chords.
+    #[inline(always)]
     pub(super) fn trace(
         &mut self,
         world: &impl World,
@@ -111,6 +115,7 @@ impl Chords {
     }
 
     /// Degree of blocking and weight of each chord that hit something.
+    #[inline(always)]
     fn weigh_hits(
         &mut self,
         world: &impl World,
@@ -139,6 +144,7 @@ impl Chords {
     }
 
     /// A2 of each point (spec §8.1 and §8.3), and its counts of chords.
+    #[inline(always)]
     fn sum_up(&mut self, params: &GatherParams<'_>, out: &mut [Gathered]) {
         let spp = params.samples.spp() as f32;
         self.sums.clear();
@@ -168,11 +174,12 @@ impl Chords {
 
     /// One chord for each chosen pair of missed rays, run by run of equal class and pair by pair, so that
     /// neighbouring rays are nearly parallel.
+    #[inline(always)]
     fn make_rays(&mut self, params: &GatherParams<'_>, points: &[ShadedPoint], samples: &Samples) {
         self.chords.clear();
         self.rays.clear();
         for run in &samples.runs {
-            self.find_missed(params, samples, run);
+            self.find_missed(params, points, samples, run);
             let most = self.starts.windows(2).map(|w| w[1] - w[0]).max().unwrap_or(0);
             let run = ChordRun { params, points, samples, run };
             match params.thin {
@@ -196,6 +203,7 @@ impl Chords {
     /// All pairs, those of the same two samples together: the points of a run share their samples, so these chords are
     /// parallel where the surface is flat. Pairs of the same ranks among the missed rays would be so only where the same
     /// rays are missed. The order of one point's chords is the same.
+    #[inline(always)]
     fn pair_by_samples(&mut self, run: &ChordRun<'_>) {
         let missed_of = |i: usize| self.missed[self.starts[i]..self.starts[i + 1]].iter();
         let sets: Vec<u64> =
@@ -211,6 +219,7 @@ impl Chords {
     }
 
     /// For each point a chord between two of its missed rays, which `ranks` chooses by their number.
+    #[inline(always)]
     fn pair(&mut self, run: &ChordRun<'_>, ranks: impl Fn(usize) -> Option<[usize; 2]>) {
         for i in 0..run.run.points {
             if let Some(ranks) = ranks(self.starts[i + 1] - self.starts[i]) {
@@ -220,6 +229,7 @@ impl Chords {
     }
 
     /// A chord of point `i` of a run between the ends of two of its missed rays.
+    #[inline(always)]
     fn join(
         &mut self,
         ChordRun { params, points, samples, run }: &ChordRun<'_>,
@@ -227,8 +237,11 @@ impl Chords {
         ranks: [usize; 2],
     ) {
         let point = &points[run.first + i];
-        let joins = ranks.map(|rank| self.missed[self.starts[i] + rank]);
-        let ends = joins.map(|j| end(params, point, &samples.get(run.slot(i, j as usize))));
+        // No `map`: it is not inlined.
+        let sample = |rank: usize| self.missed[self.starts[i] + rank];
+        let joins = [sample(ranks[0]), sample(ranks[1])];
+        let end = |j: u32| end(params, point, &samples.get(run.slot(i, j as usize)));
+        let ends = [end(joins[0]), end(joins[1])];
         let length = ends[0].distance(ends[1]);
         if length > 0.0 {
             let direction = (ends[1] - ends[0]) / length;
@@ -236,24 +249,39 @@ impl Chords {
             let seed = point.key.ray_seed((spp + ranks[0] * spp + ranks[1]) as u32);
             self.rays.push(Ray { origin: ends[0], t_max: CHORD_END * length, direction, seed });
             let point = (run.first + i) as u32;
-            let joins = joins.map(|j| j as u16);
+            let joins = [joins[0] as u16, joins[1] as u16];
             self.chords.push(Chord { point, joins, length, blocked: 0.0, weight: 0.0 });
         }
     }
 
     /// Lists the missed rays of each point: in the order of the samples (paper) or of their azimuth (sheet).
-    fn find_missed(&mut self, params: &GatherParams<'_>, samples: &Samples, run: &Run) {
+    #[inline(always)]
+    fn find_missed(
+        &mut self,
+        params: &GatherParams<'_>,
+        points: &[ShadedPoint],
+        samples: &Samples,
+        run: &Run,
+    ) {
+        let spp = params.samples.spp();
         self.missed.clear();
         self.starts.clear();
         self.starts.push(0);
+        self.order.clear();
+        self.order.extend(0..spp);
+        // Points of a class may share their directions, and then the order of these.
+        let class = points[run.first].key.class;
+        let is_shared = params.samples.shared(class, 0).is_some();
         for point in 0..run.points {
-            let start = self.missed.len();
-            let slot = |j: u32| run.slot(point, j as usize);
-            self.missed
-                .extend((0..params.samples.spp()).filter(|&j| samples.distance[slot(j)] >= params.radius));
-            if params.thin == Thin::Sheet {
-                let azimuth = |j: u32| samples.azimuth[slot(j)];
-                self.missed[start..].sort_by(|&a, &b| azimuth(a).total_cmp(&azimuth(b)));
+            if params.thin == Thin::Sheet && (point == 0 || !is_shared) {
+                let azimuth = |j: u32| samples.azimuth[run.slot(point, j as usize)];
+                // Of equal ones the earlier sample comes first.
+                self.order.sort_unstable_by(|&a, &b| azimuth(a).total_cmp(&azimuth(b)).then(a.cmp(&b)));
+            }
+            for &j in &self.order {
+                if samples.distance[run.slot(point, j as usize)] >= params.radius {
+                    self.missed.push(j);
+                }
             }
             self.starts.push(self.missed.len());
         }
@@ -278,22 +306,26 @@ fn bits(mut set: u64) -> impl Iterator<Item = u32> {
 }
 
 /// Whether the visibility of chords is all that is asked for: any hit will do.
+#[inline(always)]
 pub(super) fn any_hit_will_do(params: &GatherParams<'_>) -> bool {
     params.thin == Thin::Paper && !params.needs_radiance()
 }
 
 /// End of the missed ray of `sample` at `point`, which chords join.
+#[inline(always)]
 pub(super) fn end(params: &GatherParams<'_>, point: &ShadedPoint, sample: &Sample) -> Vec3 {
     point.position + sample.direction * end_length(params)
 }
 
 /// Distance of the end points of missed rays: R (paper), R/2 (sheet: low sheets are found too).
+#[inline(always)]
 fn end_length(params: &GatherParams<'_>) -> f32 {
     if params.thin == Thin::Paper { params.radius } else { 0.5 * params.radius }
 }
 
 /// Edge factor S(e) = 1 - smoothstep(0.15, 0.5, e) of the cosine `e` between the hit's normal and the line of sight
 /// from the shaded point: 1 for surfaces seen edge-on (spec §8.3).
+#[inline(always)]
 fn seen_edge_on(e: f32) -> f32 {
     let x = ((e - 0.15) / 0.35).clamp(0.0, 1.0);
     1.0 - x * x * (3.0 - 2.0 * x)

@@ -187,11 +187,15 @@ impl Job<'_> {
         let (x0, y0, rows) = (segment.x0, segment.y0, segment.gbuffer.len());
         let places = (0..rows).flat_map(|row| columns.clone().map(move |column| (row, column)));
         let frame = self.settings.frame;
+        // Loops and no iterators that extend: these are not compiled for the vectors.
         scratch.rays.clear();
-        scratch.rays.extend(places.clone().map(|(row, column)| {
-            let (x, y) = ((x0 + column) as u32, (y0 + row) as u32);
-            self.view.camera.primary_ray(x, y, PixelKey::primary_seed(x, y, frame))
-        }));
+        for row in 0..rows {
+            for column in columns.clone() {
+                let (x, y) = ((x0 + column) as u32, (y0 + row) as u32);
+                let seed = PixelKey::primary_seed(x, y, frame);
+                scratch.rays.push(self.view.camera.primary_ray(x, y, seed));
+            }
+        }
         scratch.hits.resize(scratch.rays.len(), Hit::MISS);
         world.closest_hits(&scratch.rays, &mut scratch.hits);
 
@@ -267,8 +271,9 @@ impl Job<'_> {
         }
         let origin = (segment.x0, segment.y0);
         scratch.receivers.clear();
-        let receiver = |&place: &Place| segment.gbuffer[place.0][place.1].receiver(self.key(origin, place));
-        scratch.receivers.extend(scratch.seen.iter().map(receiver));
+        for &place in &scratch.seen {
+            scratch.receivers.push(segment.gbuffer[place.0][place.1].receiver(self.key(origin, place)));
+        }
         scratch.received.resize(scratch.receivers.len(), Received::default());
         let lighting = DirectLighting { lights: &self.view.lights, offset: self.view.offset, shadows: true };
         let (receivers, received) = (&scratch.receivers, &mut scratch.received);
@@ -293,8 +298,9 @@ impl Job<'_> {
         let origin = (segment.x0, segment.y0);
         scratch.points.clear();
         scratch.order_by_class(origin);
-        let point = |&place: &Place| segment.gbuffer[place.0][place.1].shaded_point(self.key(origin, place));
-        scratch.points.extend(scratch.seen.iter().map(point));
+        for &place in &scratch.seen {
+            scratch.points.push(segment.gbuffer[place.0][place.1].shaded_point(self.key(origin, place)));
+        }
         scratch.gathered.resize(scratch.points.len(), Gathered::default());
         gather(world, self.params, &scratch.points, &mut scratch.gather, &mut scratch.gathered);
 
@@ -317,6 +323,7 @@ impl Job<'_> {
 impl Scratch {
     /// Orders the pixels that see a surface class by class, so that the rays of a run share their directions on flat
     /// surfaces. The first pixel of the segment is at (`x0`, `y0`).
+    #[inline(always)]
     fn order_by_class(&mut self, (x0, y0): (usize, usize)) {
         let class = |(row, column): Place| usize::from(sample_class((x0 + column) as u32, (y0 + row) as u32));
         // Where each class begins.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use ambray_core::trace::{Hit, Ray};
-use glam::{Vec2, Vec3, Vec4};
+use glam::Vec3;
 use rayon::prelude::*;
 
 use super::{
@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     Instance, Material, MaterialKind, Mesh, Motion, Scene, Texture,
-    texture::{Place, PreparedImage, PreparedTexture},
+    texture::{Looks, PreparedImage, PreparedTexture},
 };
 
 /// Placed triangles whose [`Edges`] are kept, at most: 64 MB.
@@ -102,31 +102,22 @@ impl Surfaces {
         let Some(Albedos { paints }) = self.albedos.get() else {
             return self.albedos_by_point(rays, hits, cone, albedos);
         };
-        let mut lookups: Vec<Lookup<'_>> = Vec::with_capacity(BLOCK);
-        let blocks = rays.chunks(BLOCK).zip(hits.chunks(BLOCK)).zip(albedos.chunks_mut(BLOCK));
-        for ((rays, hits), albedos) in blocks {
-            // Triangles first, then places, then texels: so many are on their way from memory at once.
-            lookups.clear();
-            for (i, hit) in hits.iter().enumerate() {
-                albedos[i] = match paints.get(hit.instance as usize) {
-                    None => Vec3::ZERO,
-                    Some(Paint::Uniform(albedo)) => *albedo,
-                    Some(Paint::Textured { base, texture, mapping, edges }) => {
-                        let triangle = hit.triangle as usize;
-                        let (mapping, edge) = (&mapping[triangle], edges[triangle]);
-                        let uv = weigh(mapping.uvs, [1.0 - hit.u - hit.v, hit.u, hit.v]);
-                        let width = hit.t * cone / edge * mapping.edge;
-                        lookups.push(Lookup { i, uv, width, texture, place: Place::Value(Vec4::ZERO) });
-                        *base
-                    }
-                    Some(Paint::ByPoint) => self.diffuse_at(&rays[i], hit, hit.t * cone).albedo,
-                };
-            }
-            for lookup in &mut lookups {
-                lookup.place = lookup.texture.locate(lookup.uv, lookup.width);
-            }
-            for Lookup { i, texture, place, .. } in &lookups {
-                albedos[*i] *= texture.value(place).truncate();
+        let mut looks = Looks::new();
+        for (i, hit) in hits.iter().enumerate() {
+            albedos[i] = match paints.get(hit.instance as usize) {
+                None => Vec3::ZERO,
+                Some(Paint::Uniform(albedo)) => *albedo,
+                Some(Paint::Textured { base, texture, mapping, edges }) => {
+                    let triangle = hit.triangle as usize;
+                    let (mapping, edge) = (&mapping[triangle], edges[triangle]);
+                    let uv = weigh(mapping.uvs, [1.0 - hit.u - hit.v, hit.u, hit.v]);
+                    looks.push(texture, uv, hit.t * cone / edge * mapping.edge, i as u32);
+                    *base
+                }
+                Some(Paint::ByPoint) => self.diffuse_at(&rays[i], hit, hit.t * cone).albedo,
+            };
+            if looks.is_full() || i + 1 == hits.len() {
+                looks.take(|i, value| albedos[i as usize] *= value.truncate());
             }
         }
     }
@@ -140,19 +131,6 @@ impl Surfaces {
         }
     }
 }
-
-/// A look into a texture, for hit `i` of a block.
-struct Lookup<'a> {
-    i: usize,
-    uv: Vec2,
-    width: f32,
-    texture: &'a PreparedTexture,
-    /// Found after `uv` and `width`.
-    place: Place,
-}
-
-/// Hits that are worked on at once.
-const BLOCK: usize = 64;
 
 /// Whether the base colour of `material` is read from a texture.
 fn is_textured(material: &Material) -> bool {
@@ -187,7 +165,7 @@ fn textures(scene: &Scene, is_read: &[bool]) -> Vec<Option<Arc<PreparedTexture>>
         images.map(|(image, is_decoded)| is_decoded.then(|| PreparedImage::new(image))).collect();
     let prepare = |texture: Texture| {
         let image = images[texture.image as usize].as_ref()?;
-        Some(Arc::new(PreparedTexture::new(image, texture.sampler)))
+        Some(Arc::new(PreparedTexture::new(image, &texture.sampler)))
     };
     read.into_iter().map(|texture| texture.and_then(prepare)).collect()
 }
@@ -219,7 +197,7 @@ fn edge(surfaces: &Surfaces, instance: usize, corners: [u32; 3]) -> f32 {
 mod tests {
     use super::*;
     use crate::{Image, Sampler, TextureRef, Wrap};
-    use glam::Affine2;
+    use glam::{Affine2, Vec2};
 
     /// Meshes with a material each, and one more that no mesh has; each material reads the one image through a texture of its
     /// own. One of the meshes has no instance.

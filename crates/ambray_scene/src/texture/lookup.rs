@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec4};
 
-use super::{Filter, Image, ImageLevel, Sampler, Wrap};
+use super::{Filter, Image, ImageLevel, Sampler, Wrap, mask::AlphaReader, taps::Axes};
 use crate::srgb;
 
 impl Sampler {
@@ -25,18 +25,17 @@ impl Sampler {
         let decode = image.decoder();
         let blend = self.blend(image.levels.len(), width * image.texels_across());
         let (fine, coarse) = (&image.levels[blend.fine], &image.levels[blend.coarse]);
-        let quad = self.quad((fine.width, fine.height), blend.filter, uv);
-        let value = quad.value(Encoded::<SRGB>::of(fine, decode));
+        let [fine_quad, coarse_quad] = Quad::pair(self.wrap, uv, [fine, coarse], blend.filter);
+        let value = fine_quad.value(Encoded::<SRGB>::of(fine, decode));
         if blend.share == 0.0 {
             return value;
         }
-        let quad = self.quad((coarse.width, coarse.height), blend.filter, uv);
-        value.lerp(quad.value(Encoded::<SRGB>::of(coarse, decode)), blend.share)
+        value.lerp(coarse_quad.value(Encoded::<SRGB>::of(coarse, decode)), blend.share)
     }
 
     /// Which levels of `levels` a footprint of `texels` texels of the full image asks for.
     #[inline(always)]
-    pub(super) fn blend(&self, levels: usize, texels: f32) -> Blend {
+    fn blend(&self, levels: usize, texels: f32) -> Blend {
         let last = levels - 1;
         let one = |level: usize, filter: Filter| Blend { fine: level, coarse: level, share: 0.0, filter };
         let Some(level) = level_of(texels, last) else { return one(0, self.mag) };
@@ -55,49 +54,24 @@ impl Sampler {
     #[must_use]
     pub fn alpha_at(&self, image: &Image, uv: Vec2) -> f32 {
         let level = &image.levels[0];
-        let alpha =
-            |x: usize, y: usize| srgb::UNIT[usize::from(level.texels[y * level.width as usize + x][3])];
-        let [u, v] = self.taps((level.width, level.height), self.mag, uv);
-        let row = |y: usize| {
-            if u.share == 0.0 {
-                alpha(u.first, y)
-            } else {
-                lerp(alpha(u.first, y), alpha(u.second, y), u.share)
-            }
-        };
-        if v.share == 0.0 { row(v.first) } else { lerp(row(v.first), row(v.second), v.share) }
-    }
-
-    /// The texels around `uv` of a level of width and height `size`.
-    #[inline(always)]
-    pub(super) fn quad(&self, size: (u32, u32), filter: Filter, uv: Vec2) -> Quad {
-        let [u, v] = self.taps(size, filter, uv);
-        let width = size.0 as usize;
-        let [upper, lower] = [v.first * width, v.second * width];
-        let texels = [upper + u.first, upper + u.second, lower + u.first, lower + u.second];
-        Quad { texels, shares: [u.share, v.share] }
-    }
-
-    #[inline(always)]
-    fn taps(&self, (width, height): (u32, u32), filter: Filter, uv: Vec2) -> [Taps; 2] {
-        [Taps::new(uv.x, width, self.wrap[0], filter), Taps::new(uv.y, height, self.wrap[1], filter)]
+        AlphaReader::new([level.width, level.height], self).read(uv, |texel| level.texels[texel][3])
     }
 }
 
 /// Levels of an image, and how they are weighed.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Blend {
-    pub(super) fine: usize,
-    pub(super) coarse: usize,
+struct Blend {
+    fine: usize,
+    coarse: usize,
     /// Weight of the coarse one; 0 if it need not be read.
-    pub(super) share: f32,
+    share: f32,
     /// Filter between texels.
-    pub(super) filter: Filter,
+    filter: Filter,
 }
 
 /// Four texels and how they are weighed; all the same one where nothing is filtered.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Quad {
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Quad {
     /// Upper and lower, left and right.
     texels: [usize; 4],
     /// Of the right ones, and of the lower ones.
@@ -105,6 +79,33 @@ pub(crate) struct Quad {
 }
 
 impl Quad {
+    /// The texels of two columns in two rows, given by where these begin, with the shares of the right ones and of the
+    /// lower ones.
+    #[inline(always)]
+    pub(super) const fn new([left, right]: [usize; 2], [upper, lower]: [usize; 2], shares: [f32; 2]) -> Self {
+        Self { texels: [upper + left, upper + right, lower + left, lower + right], shares }
+    }
+
+    /// The texels around `uv` of two levels.
+    #[inline(always)]
+    fn pair(wrap: [Wrap; 2], uv: Vec2, [fine, coarse]: [&ImageLevel; 2], filter: Filter) -> [Self; 2] {
+        let axes = Axes::of(wrap);
+        let side = |side: u32| side as i32 as f32;
+        let size = Vec4::new(side(fine.width), side(fine.height), side(coarse.width), side(coarse.height));
+        let half = filter.half();
+        let x = axes.reduced(uv) * size - half;
+        let left = x.floor();
+        let shares = if half == 0.0 { Vec4::ZERO } else { x - left };
+        let first = axes.texels(left, size);
+        let second = axes.texels(left + 1.0, size);
+        let quad = |level: &ImageLevel, u: usize, v: usize| {
+            let width = level.width as usize;
+            let rows = [first[v] * width, second[v] * width];
+            Self::new([first[u], second[u]], rows, [shares[u], shares[v]])
+        };
+        [quad(fine, 0, 1), quad(coarse, 2, 3)]
+    }
+
     #[inline(always)]
     pub(super) fn value(&self, level: impl Texels) -> Vec4 {
         let ([a, b, c, d], [right, below]) = (self.texels, self.shares);
@@ -159,90 +160,29 @@ fn level_of(texels: f32, last: usize) -> Option<f32> {
     if texels >= (1_u64 << last.min(63)) as f32 {
         return Some(last as f32);
     }
-    Some(libm::log2f(texels).min(last as f32))
+    Some(log2_above_one(texels).min(last as f32))
 }
 
-/// The largest integer that is no larger: [`f32::floor`] but for the sign of zero, without the call that it is on processors
-/// that cannot be relied on to have an instruction for it.
+/// The bits of [`libm::log2f`] for finite numbers above 1, without its cases; anything for others.
 #[inline(always)]
-fn floor(x: f32) -> f32 {
-    let towards_zero = x as i32 as f32;
-    let floor = if towards_zero > x { towards_zero - 1.0 } else { towards_zero };
-    // From here on there are only integers.
-    if x.abs() < 8_388_608.0 { floor } else { x }
-}
-
-#[inline(always)]
-fn lerp(a: f32, b: f32, share: f32) -> f32 {
-    a + (b - a) * share
-}
-
-/// The two texels that a coordinate falls between along one axis.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Taps {
-    first: usize,
-    second: usize,
-    /// Weight of `second`.
-    share: f32,
-}
-
-impl Taps {
-    #[inline(always)]
-    fn new(coordinate: f32, size: u32, wrap: Wrap, filter: Filter) -> Self {
-        let x = wrap.reduce(coordinate) * size as f32;
-        match filter {
-            Filter::Nearest => {
-                let texel = wrap.texel(floor(x) as i64, size);
-                Self { first: texel, second: texel, share: 0.0 }
-            }
-            Filter::Linear => {
-                let left = floor(x - 0.5);
-                let (first, second) = (wrap.texel(left as i64, size), wrap.texel(left as i64 + 1, size));
-                Self { first, second, share: x - 0.5 - left }
-            }
-        }
-    }
-}
-
-impl Wrap {
-    /// The coordinate of the same texel near the unit interval, so that huge ones keep their integer part exact.
-    #[inline(always)]
-    fn reduce(self, coordinate: f32) -> f32 {
-        if !coordinate.is_finite() {
-            return 0.0;
-        }
-        match self {
-            Self::Repeat => coordinate - floor(coordinate),
-            Self::Mirror => coordinate - 2.0 * floor(0.5 * coordinate),
-            Self::Clamp => coordinate.clamp(-1.0, 2.0),
-        }
-    }
-
-    /// Texel that stands for the one at `index`, which may lie outside the image: by no more than a period, as
-    /// [`reduce`](Self::reduce) makes it.
-    #[inline(always)]
-    fn texel(self, index: i64, size: u32) -> usize {
-        let size = i64::from(size);
-        // No division: it would take longer than the rest of the lookup.
-        let within = |index: i64, period: i64| {
-            if index < 0 {
-                index + period
-            } else if index >= period {
-                index - period
-            } else {
-                index
-            }
-        };
-        let inside = match self {
-            Self::Repeat => within(index, size),
-            Self::Mirror => {
-                let index = within(index, 2 * size);
-                if index < size { index } else { 2 * size - 1 - index }
-            }
-            Self::Clamp => index.clamp(0, size - 1),
-        };
-        inside as usize
-    }
+pub(super) fn log2_above_one(x: f32) -> f32 {
+    // √½, to which x is reduced by powers of two, and 1.
+    const ROOT: u32 = 0x3f35_04f3;
+    const ONE: u32 = 0x3f80_0000;
+    let bits = x.to_bits().wrapping_add(ONE - ROOT);
+    let exponent = (bits >> 23) as i32 - 127;
+    let f = f32::from_bits((bits & 0x007f_ffff) + ROOT) - 1.0;
+    let s = f / (2.0 + f);
+    let z = s * s;
+    let w = z * z;
+    let even = w * (0.400_009_72 + w * 0.242_790_79);
+    let odd = z * (0.666_666_6 + w * 0.284_987_87);
+    let half_square = 0.5 * f * f;
+    let high = f32::from_bits((f - half_square).to_bits() & 0xffff_f000);
+    let low = f - high - half_square + s * (half_square + (odd + even));
+    // 1 / ln 2, in two parts.
+    const INVERSE: [f32; 2] = [1.442_871_1, -1.760_528_5e-4];
+    (low + high) * INVERSE[1] + low * INVERSE[0] + high * INVERSE[0] + exponent as f32
 }
 
 #[cfg(test)]
@@ -264,25 +204,14 @@ mod tests {
     }
 
     #[test]
-    fn floors() {
-        let near = |x: f32| [x.next_down(), x, x.next_up(), -x, (-x).next_up(), (-x).next_down()];
-        let values = [0.0, 0.5, 1.0, 1.5, 2.0, 1e-40, 4_194_303.5, 8_388_607.0, 8_388_608.0, 3e9, 1e30];
-        for x in values.into_iter().flat_map(near) {
-            assert_eq!(floor(x), x.floor(), "{x:?}");
-        }
-    }
-
-    #[test]
-    fn texels_outside_stand_for_those_inside() {
-        for size in 1..5_u32 {
-            let period = i64::from(size);
-            for index in -1..=period {
-                assert_eq!(Wrap::Repeat.texel(index, size) as i64, index.rem_euclid(period));
-            }
-            for index in -1..=2 * period {
-                let there = index.rem_euclid(2 * period);
-                let reflected = if there < period { there } else { 2 * period - 1 - there };
-                assert_eq!(Wrap::Mirror.texel(index, size) as i64, reflected);
+    fn logarithms_are_those_of_the_library() {
+        for exponent in 0..127 {
+            let from = libm::exp2f(exponent as f32);
+            for step in 0..5000_u32 {
+                let x = f32::from_bits(from.to_bits() + step * 1677 + step % 3);
+                if x > 1.0 {
+                    assert_eq!(log2_above_one(x).to_bits(), libm::log2f(x).to_bits(), "{x}");
+                }
             }
         }
     }

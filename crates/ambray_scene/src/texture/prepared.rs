@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
-use glam::{Vec2, Vec4};
+use glam::Vec4;
 
 use super::{
     Image, ImageLevel, Sampler,
-    lookup::{Blend, Encoded, Quad, Texels},
+    looks::Mode,
+    lookup::{Encoded, Quad, Texels},
 };
 
 /// Texels of the largest level that is kept decoded. Bounced light reads footprints of a tenth of the radius and more, which
@@ -18,23 +19,25 @@ const DECODED_TEXELS: usize = 64 * 64;
 #[derive(Clone, Debug)]
 pub(crate) struct PreparedImage {
     image: Arc<Image>,
-    texels_across: f32,
+    pub(super) texels_across: f32,
+    /// What the bytes of the colour channels mean.
+    decode: &'static [f32; 256],
     /// The coarse levels' texels, linear, level after level.
     texels: Arc<[Vec4]>,
-    levels: Arc<[Level]>,
+    pub(super) levels: Arc<[Level]>,
 }
 
-/// A texture whose coarse levels are decoded.
+/// A texture whose coarse levels are decoded, to be read by [`Looks`](super::Looks).
 #[derive(Clone, Debug)]
 pub(crate) struct PreparedTexture {
-    sampler: Sampler,
-    image: PreparedImage,
+    pub(super) mode: Mode,
+    pub(super) image: PreparedImage,
 }
 
 /// A level of the image.
 #[derive(Clone, Copy, Debug)]
-struct Level {
-    size: (u32, u32),
+pub(super) struct Level {
+    pub(super) size: [i32; 2],
     /// Where it begins among the decoded texels; [`FINE`] if it is not there.
     start: u32,
 }
@@ -47,7 +50,7 @@ impl PreparedImage {
     pub(crate) fn new(image: &Arc<Image>) -> Self {
         let (decode, mut texels) = (image.decoder(), Vec::new());
         let mut place = |level: &ImageLevel| {
-            let size = (level.width, level.height);
+            let size = [level.width as i32, level.height as i32];
             if level.texels.len() > DECODED_TEXELS {
                 return Level { size, start: FINE };
             }
@@ -57,14 +60,21 @@ impl PreparedImage {
             Level { size, start }
         };
         let levels = image.levels.iter().map(&mut place).collect();
-        Self { image: Arc::clone(image), texels_across: image.texels_across(), texels: texels.into(), levels }
+        let texels_across = image.texels_across();
+        Self { image: Arc::clone(image), texels_across, decode, texels: texels.into(), levels }
+    }
+
+    /// Number of the smallest level.
+    #[inline(always)]
+    pub(super) fn last_level(&self) -> u32 {
+        self.levels.len() as u32 - 1
     }
 }
 
 impl PreparedTexture {
     /// Makes `image` ready to be read by `sampler`.
-    pub(crate) fn new(image: &PreparedImage, sampler: Sampler) -> Self {
-        Self { sampler, image: image.clone() }
+    pub(crate) fn new(image: &PreparedImage, sampler: &Sampler) -> Self {
+        Self { mode: Mode::of(sampler), image: image.clone() }
     }
 
     /// Whether the decoded texels of both are the same memory.
@@ -73,51 +83,18 @@ impl PreparedTexture {
         Arc::ptr_eq(&self.image.texels, &other.image.texels)
     }
 
-    /// Where to look for the value at `uv` of a footprint of `width` texture units. Apart from looking, so that many looks
-    /// can wait for memory at once.
+    /// The value of a `quad` of a level.
     #[inline(always)]
-    pub(crate) fn locate(&self, uv: Vec2, width: f32) -> Place {
-        let PreparedImage { levels, texels_across, .. } = &self.image;
-        let Blend { fine, coarse, share, filter } = self.sampler.blend(levels.len(), width * texels_across);
-        let (fine, coarse) = (levels[fine], levels[coarse]);
-        // The fine one is the larger of the two.
-        if fine.start == FINE {
-            return Place::Value(self.read_fine(uv, width));
-        }
-        let first = (fine.start, self.sampler.quad(fine.size, filter, uv));
-        if share == 0.0 {
-            return Place::One(first);
-        }
-        Place::Two(first, (coarse.start, self.sampler.quad(coarse.size, filter, uv)), share)
-    }
-
-    /// The bits of [`Sampler::sample`] at a place of [`locate`](Self::locate).
-    #[inline(always)]
-    pub(crate) fn value(&self, place: &Place) -> Vec4 {
-        let read = |(start, quad): &(u32, Quad)| quad.value(Decoded(&self.image.texels[*start as usize..]));
-        match place {
-            Place::Two(fine, coarse, share) => read(fine).lerp(read(coarse), *share),
-            Place::One(level) => read(level),
-            Place::Value(value) => *value,
+    pub(super) fn read(&self, level: usize, quad: &Quad) -> Vec4 {
+        let PreparedImage { image, decode, texels, levels, .. } = &self.image;
+        let start = levels[level].start;
+        if start == FINE {
+            // The bits of images that are not sRGB too.
+            quad.value(Encoded::<true>::of(&image.levels[level], decode))
+        } else {
+            quad.value(Decoded(&texels[start as usize..]))
         }
     }
-
-    /// Seldom needed, so its code is not among the rest.
-    #[inline(never)]
-    fn read_fine(&self, uv: Vec2, width: f32) -> Vec4 {
-        self.sampler.sample(&self.image.image, uv, width)
-    }
-}
-
-/// A place in a [`PreparedTexture`].
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Place {
-    /// Between two levels, the share of the second.
-    Two((u32, Quad), (u32, Quad), f32),
-    /// In one level.
-    One((u32, Quad)),
-    /// In levels that are not decoded: the value itself.
-    Value(Vec4),
 }
 
 /// Decoded texels of a level, and of those after it.
@@ -133,7 +110,8 @@ impl Texels for Decoded<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Filter, Wrap};
+    use crate::{Filter, Wrap, texture::Looks};
+    use glam::Vec2;
 
     #[test]
     fn prepared_textures_read_the_same_bits() {
@@ -141,23 +119,44 @@ mod tests {
         let byte = |i: u32| (i.wrapping_mul(2_654_435_761) >> 24) as u8;
         let texels: Vec<[u8; 4]> =
             (0..300 * 70).map(|i| [byte(4 * i), byte(4 * i + 1), byte(4 * i + 2), byte(4 * i + 3)]).collect();
+        let wraps = [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp];
+        let filters = [Filter::Nearest, Filter::Linear];
         for srgb in [false, true] {
             let image = Arc::new(Image::new(String::new(), 300, 70, texels.clone(), srgb));
-            for (wrap, min, mip) in [
-                (Wrap::Repeat, Filter::Linear, Some(Filter::Linear)),
-                (Wrap::Mirror, Filter::Nearest, Some(Filter::Linear)),
-                (Wrap::Clamp, Filter::Linear, Some(Filter::Nearest)),
-                (Wrap::Repeat, Filter::Linear, None),
-            ] {
-                let sampler = Sampler { wrap: [wrap; 2], mag: Filter::Linear, min, mip };
-                let prepared = PreparedTexture::new(&PreparedImage::new(&image), sampler);
-                for i in 0..2000 {
-                    let uv = Vec2::new(i as f32 * 0.0173 - 9.0, i as f32 * -0.0091 + 3.0);
-                    let width = libm::exp2f((i % 23) as f32 * 0.5 - 10.0);
-                    let value = prepared.value(&prepared.locate(uv, width));
-                    assert_eq!(value, sampler.sample(&image, uv, width));
-                }
+            let image_prepared = PreparedImage::new(&image);
+            for number in 0..9 * 2 * 2 * 3 {
+                let sampler = Sampler {
+                    wrap: [wraps[number % 3], wraps[number / 3 % 3]],
+                    mag: filters[number / 9 % 2],
+                    min: filters[number / 18 % 2],
+                    mip: [None, Some(Filter::Nearest), Some(Filter::Linear)][number / 36],
+                };
+                check(&PreparedTexture::new(&image_prepared, &sampler), &sampler, &image);
             }
         }
+    }
+
+    fn check(prepared: &PreparedTexture, sampler: &Sampler, image: &Image) {
+        let odd = [f32::NAN, f32::INFINITY, f32::MAX, -3e9, 8_388_607.5, -0.0, 1e-40, -1e-9, 1.0, 2.0, -1.0];
+        let coordinates = (0..500).map(|i| i as f32 * 0.0173 - 4.0).chain(odd);
+        let looks: Vec<(Vec2, f32)> = (coordinates.enumerate())
+            .map(|(i, u)| {
+                let width = [f32::NAN, -1.0, 0.0, f32::INFINITY].get(i % 41).copied();
+                let width = width.unwrap_or(libm::exp2f((i % 23) as f32 * 0.5 - 10.0));
+                (if i % 2 == 0 { Vec2::new(u, 3.0 - 0.7 * u) } else { Vec2::new(0.37 * u, u) }, width)
+            })
+            .collect();
+        let (mut batch, mut taken) = (Looks::new(), 0);
+        for (tag, &(uv, width)) in looks.iter().enumerate() {
+            batch.push(prepared, uv, width, tag as u32);
+            if batch.is_full() || tag + 1 == looks.len() {
+                batch.take(|tag, value| {
+                    let (uv, width) = looks[tag as usize];
+                    assert_eq!(value, sampler.sample(image, uv, width), "{uv} {width} {sampler:?}");
+                    taken += 1;
+                });
+            }
+        }
+        assert_eq!(taken, looks.len());
     }
 }
