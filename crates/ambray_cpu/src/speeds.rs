@@ -39,7 +39,7 @@ const LARGEST: f32 = 1.5;
 const PAUSES: [f32; 2] = [8.0, 512.0];
 
 /// Comparisons may cost one part in so many of the time.
-const PRICE: f32 = 64.0;
+const PRICE: f32 = 128.0;
 
 /// How a batch is to be traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

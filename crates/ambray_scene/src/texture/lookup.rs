@@ -163,7 +163,8 @@ fn level_of(texels: f32, last: usize) -> Option<f32> {
     Some(log2_above_one(texels).min(last as f32))
 }
 
-/// The bits of [`libm::log2f`] for finite numbers above 1, without its cases; anything for others.
+/// The bits of [`libm::log2f`] for finite numbers above 1, without its cases; anything for others. Its method and coefficients,
+/// which are those of FreeBSD's, so that many logarithms can be taken side by side.
 #[inline(always)]
 pub(super) fn log2_above_one(x: f32) -> f32 {
     // √½, to which x is reduced by powers of two, and 1.
