@@ -71,8 +71,8 @@ impl Default for BuildOptions {
 /// When rays go in packets.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Packets {
-    /// Where that has turned out to be quicker: now and then a batch is traced half in packets and half ray by ray. Answers do
-    /// not depend on it, but what is done, instruction by instruction, does on the time.
+    /// Where that has turned out to be quicker: now and then a part of a batch goes ray by ray and the rest in packets, and their
+    /// times are compared. Answers do not depend on it, but which instructions are run does.
     #[default]
     Measured,
     /// In every batch.

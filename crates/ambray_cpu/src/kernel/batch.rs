@@ -12,7 +12,7 @@ use super::{Query, Scene, cut, packet, single, triangle};
 /// Rays of a group that is worth a packet of its own; those of others look for company in the whole batch.
 const TOGETHER: u32 = 8;
 
-/// Numbers of lanes.
+/// Numbers of lanes. A constant, because closures that fill arrays are not inlined into the kernels.
 const COUNTED: [u32; LANES] = {
     let mut counted = [0; LANES];
     let mut lane = 0;
